@@ -1,0 +1,4 @@
+//! **darkness** renders what a black hole does to the light of its accretion disk.
+
+pub mod orbit;
+pub mod scene;

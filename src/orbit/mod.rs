@@ -1,0 +1,141 @@
+//! Light rays around a Schwarzschild hole: what happens to a ray, and at which angles.
+//!
+//! Units: the Schwarzschild radius is 1, `u = 1/r`, angles in radians. A ray moves in a plane, where
+//! `d²u/dφ² = 3/2 u² − u`; its first integral is `e² = (du/dφ)² + u²(1 − u) = 1/b²`, b the impact parameter.
+//!
+//! One question is asked of a ray, [`Orbits::follow`]: which radii does it cross, in which order, at which
+//! swept angles, and how does it end? It is answered by [`exact::Exact`] (elliptic integrals), by
+//! [`integrate::Adaptive`] and [`integrate::FixedStep`] (the equation itself, stepped in φ), and by the
+//! [table](crate::table).
+
+pub mod integrate;
+
+/// A ray's state where it starts, in its own plane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ray {
+    u: f64,
+    dudphi: f64,
+}
+
+impl Ray {
+    /// A ray at inverse radius `u` (`0 < u < 1`, outside the horizon) with slope `dudphi` (any number, or ±∞
+    /// for straight in and straight out).
+    ///
+    /// # Errors
+    /// [`OrbitError::Outside`] where `u` is not strictly between 0 and 1, [`OrbitError::NoSlope`] where `dudphi`
+    /// is not a number.
+    pub fn new(u: f64, dudphi: f64) -> Result<Self, OrbitError> {
+        if !(u > 0.0 && u < 1.0) {
+            return Err(OrbitError::Outside { u });
+        }
+        if dudphi.is_nan() {
+            return Err(OrbitError::NoSlope);
+        }
+        Ok(Self { u, dudphi })
+    }
+
+    /// Inverse radius `u = 1/r`, between 0 and 1.
+    pub fn u(self) -> f64 {
+        self.u
+    }
+
+    /// `du/dφ`, positive where the ray goes inward.
+    pub fn dudphi(self) -> f64 {
+        self.dudphi
+    }
+}
+
+/// How a ray ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Fate {
+    /// It reaches the horizon, r = 1.
+    Capture,
+    /// It flies out to r = ∞.
+    Escape,
+}
+
+/// Something that happens to a ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum EventKind {
+    /// It crosses a radius towards the hole.
+    Inbound,
+    /// It crosses a radius away from the hole.
+    Outbound,
+    /// It ends.
+    End(Fate),
+}
+
+/// One thing that happens to a ray, and where.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Event {
+    /// What happens.
+    pub kind: EventKind,
+    /// The radius crossed, in Schwarzschild radii; 1 at capture, infinite at escape.
+    pub radius: f64,
+    /// The angle swept from the start, in radians.
+    pub angle: f64,
+}
+
+/// Why a ray could not be followed.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum OrbitError {
+    /// The ray does not start outside the horizon.
+    #[error("u0 = {u:?} is not between 0 and 1: a ray starts outside the horizon, at r = 1/u0 > 1")]
+    Outside {
+        /// The inverse radius given.
+        u: f64,
+    },
+    /// The ray has no direction.
+    #[error("dudphi is not a number: give du/dφ, or inf / -inf for a ray straight at or away from the hole")]
+    NoSlope,
+    /// A radius to be watched is no radius outside the horizon.
+    #[error("radius {radius:?} is not allowed: crossings are reported for finite radii above 1, the horizon")]
+    Radius {
+        /// The radius given.
+        radius: f64,
+    },
+    /// A stepped solution did not end.
+    #[error("no end found within {steps} steps (reached φ = {angle:?}): the ray winds near the photon sphere; use a larger step limit or the exact method")]
+    StepLimit {
+        /// The steps taken.
+        steps: u64,
+        /// The angle reached.
+        angle: f64,
+    },
+}
+
+/// A way to find out what happens to a ray.
+pub trait Orbits: Sync {
+    /// All events of `ray` in the order they happen: the crossings of each of `radii` (Schwarzschild radii, finite, above 1;
+    /// a radius given twice counts once), then its end. The start itself is no crossing.
+    ///
+    /// # Errors
+    /// [`OrbitError::Radius`] for a radius that cannot be watched, [`OrbitError::StepLimit`] where a stepped method gives up.
+    fn follow(&self, ray: Ray, radii: &[f64]) -> Result<Vec<Event>, OrbitError>;
+}
+
+/// The radii to watch, as inverse radii in ascending `u`, each once.
+///
+/// # Errors
+/// [`OrbitError::Radius`] for a radius that is not finite and above 1.
+pub(crate) fn inverse_radii(radii: &[f64]) -> Result<Vec<WatchedRadius>, OrbitError> {
+    let mut watched = Vec::with_capacity(radii.len());
+    for &radius in radii {
+        if !(radius > 1.0 && radius.is_finite()) {
+            return Err(OrbitError::Radius { radius });
+        }
+        watched.push(WatchedRadius { radius, u: 1.0 / radius });
+    }
+    watched.sort_by(|a, b| b.radius.total_cmp(&a.radius));
+    watched.dedup_by(|a, b| a.radius == b.radius);
+    Ok(watched)
+}
+
+/// A radius whose crossings are reported.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct WatchedRadius {
+    /// As given, in Schwarzschild radii.
+    pub(crate) radius: f64,
+    /// Its inverse.
+    pub(crate) u: f64,
+}
