@@ -2,3 +2,4 @@
 
 pub mod orbit;
 pub mod scene;
+pub mod table;

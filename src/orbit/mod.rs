@@ -8,7 +8,14 @@
 //! [`integrate::Adaptive`] and [`integrate::FixedStep`] (the equation itself, stepped in φ), and by the
 //! [table](crate::table).
 
+pub mod carlson;
+pub mod exact;
 pub mod integrate;
+pub mod invariants;
+pub mod path;
+
+/// The farthest start there is, as inverse radius: beyond r = 1e100 the squares of `u` leave the range of numbers.
+pub const MIN_U: f64 = 1e-100;
 
 /// A ray's state where it starts, in its own plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,14 +25,14 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// A ray at inverse radius `u` (`0 < u < 1`, outside the horizon) with slope `dudphi` (any number, or ±∞
+    /// A ray at inverse radius `u` (`1e-100 ≤ u < 1`, outside the horizon) with slope `dudphi` (any number, or ±∞
     /// for straight in and straight out).
     ///
     /// # Errors
-    /// [`OrbitError::Outside`] where `u` is not strictly between 0 and 1, [`OrbitError::NoSlope`] where `dudphi`
+    /// [`OrbitError::Outside`] where `u` is not within those bounds, [`OrbitError::NoSlope`] where `dudphi`
     /// is not a number.
     pub fn new(u: f64, dudphi: f64) -> Result<Self, OrbitError> {
-        if !(u > 0.0 && u < 1.0) {
+        if !(u >= MIN_U && u < 1.0) {
             return Err(OrbitError::Outside { u });
         }
         if dudphi.is_nan() {
@@ -80,7 +87,7 @@ pub struct Event {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum OrbitError {
     /// The ray does not start outside the horizon.
-    #[error("u0 = {u:?} is not between 0 and 1: a ray starts outside the horizon, at r = 1/u0 > 1")]
+    #[error("u0 = {u:?} is not allowed: a ray starts outside the horizon and within 1e100 radii of it, 1e-100 ≤ u0 < 1")]
     Outside {
         /// The inverse radius given.
         u: f64,
@@ -89,7 +96,7 @@ pub enum OrbitError {
     #[error("dudphi is not a number: give du/dφ, or inf / -inf for a ray straight at or away from the hole")]
     NoSlope,
     /// A radius to be watched is no radius outside the horizon.
-    #[error("radius {radius:?} is not allowed: crossings are reported for finite radii above 1, the horizon")]
+    #[error("radius {radius:?} is not allowed: crossings are reported for radii above 1, the horizon, up to 1e100")]
     Radius {
         /// The radius given.
         radius: f64,
@@ -121,7 +128,7 @@ pub trait Orbits: Sync {
 pub(crate) fn inverse_radii(radii: &[f64]) -> Result<Vec<WatchedRadius>, OrbitError> {
     let mut watched = Vec::with_capacity(radii.len());
     for &radius in radii {
-        if !(radius > 1.0 && radius.is_finite()) {
+        if !(radius > 1.0 && radius <= 1.0 / MIN_U) {
             return Err(OrbitError::Radius { radius });
         }
         watched.push(WatchedRadius { radius, u: 1.0 / radius });

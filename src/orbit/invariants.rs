@@ -1,0 +1,186 @@
+//! What stays constant along a ray: e², its distance from critical, and its family. The fate follows.
+
+use super::{Fate, Ray};
+
+/// The photon sphere's inverse radius, where the critical orbit winds for ever.
+pub const PHOTON_SPHERE_U: f64 = 2.0 / 3.0;
+
+/// `e² = 1/b²` of the critical ray, b = 3√3/2 (design of the phase plane: its saddle is at (2/3, 0)).
+pub const CRITICAL_E2: f64 = 4.0 / 27.0;
+
+/// The three families of rays, by `e²` and the side of the photon sphere.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Family {
+    /// `e² > 4/27`: no turning point; falls in where `du/dφ > 0`, flies out where `du/dφ < 0`.
+    Monotone,
+    /// `e² < 4/27`, outside the photon sphere: turns at a periapsis and escapes.
+    Scattered,
+    /// `e² < 4/27`, inside the photon sphere: turns at an apoapsis and is captured.
+    Trapped,
+}
+
+/// A ray with its constants of motion.
+#[derive(Debug, Clone, Copy)]
+pub struct Orbit {
+    /// Where the ray starts.
+    pub start: Point,
+    /// Whether it starts towards the hole. A ray that starts at its turning point counts as having passed it.
+    pub inward: bool,
+    /// `e² = (du/dφ)² + u²(1 − u) = 1/b²`.
+    pub e2: f64,
+    /// `Δ = e² − 4/27`, to a few units in the last place of itself wherever the start allows it.
+    pub delta: f64,
+    /// Which way the ray goes.
+    pub family: Family,
+}
+
+/// A point of an orbit: where it is, and how steep.
+#[derive(Debug, Clone, Copy)]
+pub struct Point {
+    /// Inverse radius.
+    pub u: f64,
+    /// `|du/dφ|`.
+    pub slope: f64,
+}
+
+impl Orbit {
+    /// The constants of motion of `ray`.
+    pub fn new(ray: Ray) -> Self {
+        let (u, w) = (ray.u(), ray.dudphi());
+        let slope = w.abs();
+        let delta = distance_from_critical(u, slope);
+        let family = if delta > 0.0 {
+            Family::Monotone
+        } else if three_u_minus_two(u) < 0.0 {
+            Family::Scattered
+        } else {
+            Family::Trapped
+        };
+        Self { start: Point { u, slope }, inward: w > 0.0, e2: slope * slope + u * u * (1.0 - u), delta, family }
+    }
+
+    /// How the ray ends.
+    pub fn fate(&self) -> Fate {
+        match self.family {
+            Family::Monotone if self.inward => Fate::Capture,
+            Family::Trapped => Fate::Capture,
+            Family::Monotone | Family::Scattered => Fate::Escape,
+        }
+    }
+
+    /// The orbit's point at inverse radius `u`, if the orbit reaches it (before or after its turning point; a radius that it only touches is
+    /// not reached).
+    ///
+    /// `u̇² = u̇0² + (u0 − u)(u0 + u − u0² − u0 u − u²)`: the start's slope and a difference that is exact for
+    /// neighbouring radii. About the photon sphere the second factor vanishes too; with `x = u − 2/3` it is
+    /// `−(x0 + x + x0² + x0 x + x²)`, which keeps its digits there.
+    pub fn point_at(&self, u: f64) -> Option<Point> {
+        let u0 = self.start.u;
+        let factor = if u0 + u > 1.0 {
+            let (x0, x) = (three_u_minus_two(u0) / 3.0, three_u_minus_two(u) / 3.0);
+            -(x0 + x + x0 * x0 + x0 * x + x * x)
+        } else {
+            u0 + u - u0 * u0 - u0 * u - u * u
+        };
+        let squared = self.start.slope * self.start.slope + (u0 - u) * factor;
+        let same_side = match self.family {
+            Family::Monotone => true,
+            Family::Scattered => three_u_minus_two(u) < 0.0,
+            Family::Trapped => three_u_minus_two(u) > 0.0,
+        };
+        (same_side && squared > 0.0).then(|| Point { u, slope: squared.sqrt() })
+    }
+
+    /// The orbit's end: r = ∞ or the horizon. There `|du/dφ| = e`.
+    pub fn end(&self) -> Point {
+        let u = match self.fate() {
+            Fate::Capture => 1.0,
+            Fate::Escape => 0.0,
+        };
+        Point { u, slope: self.e2.sqrt() }
+    }
+}
+
+/// `3u − 2`, rounded once: for u ≥ ½ both summands of `(2u − 1) + (u − 1)` are exact. Never zero, since 2/3 is no
+/// floating-point number.
+pub(crate) fn three_u_minus_two(u: f64) -> f64 {
+    if u >= 0.5 { (2.0 * u - 1.0) + (u - 1.0) } else { 3.0 * u - 2.0 }
+}
+
+/// `s = |u − 2/3| √(u + 1/3)`: the slope `|du/dφ|` of the critical ray at u, since `s² = 4/27 − u²(1 − u)`.
+pub(crate) fn critical_slope(u: f64) -> f64 {
+    three_u_minus_two(u).abs() * ((3.0 * u + 1.0) / 27.0).sqrt()
+}
+
+/// `Δ = e² − 4/27 = (|u̇| − s)(|u̇| + s)`.
+///
+/// Within some units in the last place of critical the first factor has no digit left; there Δ is
+/// `(27u̇² − (3u − 2)²(3u + 1))/27` in double-double, whose relative error of 2⁻¹⁰⁰ (against 27u̇²) leaves the sign,
+/// hence the fate, right.
+fn distance_from_critical(u: f64, slope: f64) -> f64 {
+    let s = critical_slope(u);
+    let difference = slope - s;
+    if slope.is_infinite() {
+        return f64::INFINITY;
+    }
+    // s carries at most 3 roundings; 16 ε leaves the plain form at least two digits of the difference's sign, and its error
+    // below the 16 ε·condition of the ray itself.
+    if difference.abs() > 16.0 * f64::EPSILON * s {
+        return difference * (slope + s);
+    }
+    let x = if u >= 0.5 {
+        Double::sum(2.0 * u - 1.0, u - 1.0)
+    } else {
+        Double::product(3.0, u).add(-2.0)
+    };
+    let y = Double::product(3.0, u).add(1.0);
+    let squared = Double::product(slope, slope);
+    let critical = x.mul(x).mul(y);
+    squared.mul(Double { high: 27.0, low: 0.0 }).sub(critical) / 27.0
+}
+
+/// An unevaluated sum of two doubles, |low| ≤ ulp(high)/2.
+#[derive(Clone, Copy)]
+struct Double {
+    high: f64,
+    low: f64,
+}
+
+impl Double {
+    /// a + b exactly (Knuth 1969).
+    fn sum(a: f64, b: f64) -> Self {
+        let high = a + b;
+        let part = high - a;
+        Self { high, low: (a - (high - part)) + (b - part) }
+    }
+
+    /// a·b exactly (Dekker 1971): by splitting, so that no fused multiply-add is needed.
+    fn product(a: f64, b: f64) -> Self {
+        let high = a * b;
+        let ((ah, al), (bh, bl)) = (split(a), split(b));
+        Self { high, low: ((ah * bh - high) + ah * bl + al * bh) + al * bl }
+    }
+
+    fn add(self, b: f64) -> Self {
+        let s = Self::sum(self.high, b);
+        Self::sum(s.high, s.low + self.low)
+    }
+
+    fn mul(self, other: Self) -> Self {
+        let p = Self::product(self.high, other.high);
+        Self::sum(p.high, p.low + (self.high * other.low + self.low * other.high))
+    }
+
+    /// The difference, as one double.
+    fn sub(self, other: Self) -> f64 {
+        let d = Self::sum(self.high, -other.high);
+        d.high + (d.low + (self.low - other.low))
+    }
+}
+
+/// The upper 26 bits of a, and the rest (Veltkamp 1968).
+fn split(a: f64) -> (f64, f64) {
+    let c = 134_217_729.0 * a;
+    let high = c - (c - a);
+    (high, a - high)
+}

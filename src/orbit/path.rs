@@ -1,0 +1,81 @@
+//! A ray's events, put together from swept angles. Written once for every method that knows those.
+
+use super::invariants::{Family, Orbit, Point};
+use super::{Event, EventKind, Orbits, OrbitError, Ray, WatchedRadius, inverse_radii};
+
+/// A method that knows the angle a ray sweeps between two points of its orbit.
+pub trait SweptAngles: Sync {
+    /// The angle swept from `from` to `to` on a stretch without a turning point, `∫ du/|du/dφ|` between them; ≥ 0.
+    fn direct(&self, orbit: &Orbit, from: Point, to: Point) -> f64;
+
+    /// The angle swept from `from` over the orbit's turning point (periapsis or apoapsis) to `to`. Only for orbits that have one.
+    fn around(&self, orbit: &Orbit, from: Point, to: Point) -> f64;
+
+    /// The angle from the start of `orbit` to its end.
+    fn to_end(&self, orbit: &Orbit) -> f64 {
+        if turns(orbit) {
+            self.around(orbit, orbit.start, orbit.end())
+        } else {
+            self.direct(orbit, orbit.start, orbit.end())
+        }
+    }
+
+    /// The angles at which the orbit crosses inverse radius `u`: inbound, outbound. The start is no crossing.
+    fn crossings(&self, orbit: &Orbit, u: f64) -> Crossings {
+        let start = orbit.start;
+        let Some(point) = orbit.point_at(u) else { return Crossings::default() };
+        let beyond = if orbit.inward { u > start.u } else { u < start.u };
+        let first = beyond.then(|| self.direct(orbit, start, point));
+        // What lies on the way to the turning point is crossed again after it, and so is all that lies behind the start.
+        let second = turns(orbit).then(|| self.around(orbit, start, point));
+        if orbit.inward { Crossings { inbound: first, outbound: second } } else { Crossings { inbound: second, outbound: first } }
+    }
+}
+
+/// Whether the orbit's turning point is still ahead of its start.
+fn turns(orbit: &Orbit) -> bool {
+    match orbit.family {
+        Family::Monotone => false,
+        Family::Scattered => orbit.inward,
+        // At an apoapsis (slope 0) the ray is already on its way in.
+        Family::Trapped => !orbit.inward && orbit.start.slope > 0.0,
+    }
+}
+
+/// The angles at which a ray crosses one radius.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Crossings {
+    /// Towards the hole.
+    pub inbound: Option<f64>,
+    /// Away from the hole.
+    pub outbound: Option<f64>,
+}
+
+impl<T: SweptAngles> Orbits for T {
+    fn follow(&self, ray: Ray, radii: &[f64]) -> Result<Vec<Event>, OrbitError> {
+        let watched = inverse_radii(radii)?;
+        let orbit = Orbit::new(ray);
+        let mut inbound = Vec::with_capacity(watched.len());
+        let mut outbound = Vec::with_capacity(watched.len());
+        for &WatchedRadius { radius, u } in &watched {
+            let crossings = self.crossings(&orbit, u);
+            let event = |kind| move |angle| Event { kind, radius, angle };
+            inbound.extend(crossings.inbound.map(event(EventKind::Inbound)));
+            outbound.extend(crossings.outbound.map(event(EventKind::Outbound)));
+        }
+        // Watched radii come in ascending u: the order of inbound crossings, the reverse of outbound ones. A trapped ray goes
+        // out first and in afterwards, every other ray in first.
+        outbound.reverse();
+        let (mut events, rest) = match orbit.family {
+            Family::Trapped => (outbound, inbound),
+            Family::Monotone | Family::Scattered => (inbound, outbound),
+        };
+        events.extend(rest);
+        events.push(Event {
+            kind: EventKind::End(orbit.fate()),
+            radius: 1.0 / orbit.end().u,
+            angle: self.to_end(&orbit),
+        });
+        Ok(events)
+    }
+}

@@ -1,0 +1,167 @@
+//! The four charts of the phase plane, and the smooth function that each of them stores.
+//!
+//! A swept angle is `∫ du/√P`, `P = u³ − u² + e² = (du/dφ)²`. Of one function of `(u0, du/dφ)` it is singular on the critical
+//! line `e² = 4/27`, at every turning point and at both ends of e. Each chart takes out in closed form what is
+//! singular in its part of the plane; what is left is analytic well beyond the chart's borders.
+//!
+//! | chart | where | axes | stored | swept angle |
+//! |---|---|---|---|---|
+//! | critical | 0.64 ≤ 27e²/4 ≤ 3 | γ = √(u + 1/3), e | A(e), B(γ, e) | J = ±A ln((s + \|u̇\|)/√\|Δ\|) + (\|u̇\|/γ²) B, a difference or a sum of two J |
+//! | weak | 27e²/4 < 0.64, u < 2/3 | v = u/e, t = √(1 − e/e_c) | V(v, t) | to the periapsis: \|u̇\|/(e + u) V |
+//! | trapped | 27e²/4 < 0.64, u > 2/3 | u, t | Z(u, t) | to the apoapsis: \|u̇\| Z |
+//! | radial | 27e²/4 > 3 | u, 1/e² | H(u, 1/e²) | difference of two H, over e |
+//!
+//! `Δ = e² − 4/27`, `e_c² = 4/27`. The borders were chosen by measuring where the charts on both sides need equally many nodes.
+//!
+//! # Derivation
+//! *Critical.* With `s = |u − 2/3| √(u + 1/3)` and its signed form `σ`, `P = σ² + Δ`. Near the photon sphere the
+//! integrand is an analytic function of σ over `√(σ² + Δ)`, so that term by term
+//! `∫ du/√P = A asinh(σ/√Δ) + √P B/γ²`, with A and B analytic in Δ through zero: **the critical line is no singularity
+//! of either**. (For Δ < 0 read `± acosh(|σ|/√−Δ)`; both are `± ln((s + |u̇|)/√|Δ|)`.) B/γ² has its nearest singularity at the
+//! root u1 ≈ −1/3, a pole in γ near γ = 0; the factor γ² takes the most of it out. As functions of e both are singular at e = 0 only.
+//!
+//! B itself comes from a power series. With the cubic's lone root u1, `c = (p − u1)`, p the mean of the other two roots, `y = (u − p)/c`,
+//! `m = (1 − c⁻²)/3`: `√c ∫ du/√P = ∫ dy/(√(1 + y) √(y² + m)) = A₁ asinh(y/√m) + √(y² + m) Σ bₙ yⁿ`. Differentiated, with
+//! `aₙ = binom(−½, n)`: `n b₍ₙ₋₁₎ + m (n + 1) b₍ₙ₊₁₎ = aₙ`, `A₁ = 1 − m b₁`: solved downwards, where it is stable. The two logarithms differ
+//! by `asinh(|u̇| ν)`, ν analytic (see [`log_difference`]).
+//!
+//! *Weak* and *trapped*: the angle to the turning point is odd in u̇ and analytic in u̇², so over u̇ it is analytic in u, beyond the turning
+//! point too; its next singularity is the other turning point, for small e the mirrored one at v = −1, where a factor 1 + v makes a root of a
+//! pole. In flat space `V = acos v √((1 + v)/(1 − v))`.
+//!
+//! *Radial*: `H = ∫₀ᵘ du/√(1 − u²(1 − u)/e²)` is analytic in u and 1/e², and gives short angles with small absolute error.
+
+use crate::orbit::carlson::rf;
+use crate::orbit::exact::{RealRoots, without_turning_point};
+pub(crate) use crate::orbit::invariants::CRITICAL_E2;
+
+/// Between the weak or trapped chart and the critical one.
+pub(crate) const LOWER_E2: f64 = 0.64 * CRITICAL_E2;
+
+/// Between the critical chart and the radial one.
+pub(crate) const UPPER_E2: f64 = 3.0 * CRITICAL_E2;
+
+/// Smallest u of the trapped chart: just below the apoapsis, which is at u3 = 0.87662 where e² is [`LOWER_E2`].
+pub(crate) const TRAPPED_U: f64 = 0.8766;
+
+/// Largest v of the weak chart: just above u2/e = 1/√(1 − u2), which is 1.28704 where e² is [`LOWER_E2`].
+pub(crate) const WEAK_V: f64 = 1.2871;
+
+/// `1/e_c`, the critical impact parameter 3√3/2.
+pub(crate) const CRITICAL_B: f64 = 2.598_076_211_353_316;
+
+/// Powers of y kept: |y| < 0.71 and |m| < 0.14 in the critical chart, and 0.71¹⁴⁰ is below 1e-20.
+const TERMS: usize = 140;
+
+/// A row of the critical chart: what depends on Δ alone.
+pub(crate) struct CriticalRow {
+    delta: f64,
+    /// `c − 1`.
+    d: f64,
+    c: f64,
+    amplitude: f64,
+    series: Vec<f64>,
+}
+
+impl CriticalRow {
+    /// The row of `e`.
+    pub(crate) fn new(e: f64) -> Self {
+        let delta = (e - CRITICAL_E2.sqrt()) * (e + CRITICAL_E2.sqrt());
+        // c = cosh η or cos η with 4c³ − 3c = 1 + 27Δ/2; c − 1 without cancellation.
+        let d = if delta > 0.0 {
+            let half = libm::sinh(libm::asinh((delta / CRITICAL_E2).sqrt()) / 3.0);
+            2.0 * half * half
+        } else {
+            let half = libm::sin(libm::asin((-delta / CRITICAL_E2).sqrt()) / 3.0);
+            -2.0 * half * half
+        };
+        let c = 1.0 + d;
+        let m = d * (2.0 + d) / (3.0 * c * c);
+        let mut binomials = vec![1.0; TERMS];
+        for n in 1..TERMS {
+            let k = n as f64;
+            binomials[n] = binomials[n - 1] * (0.5 - k) / k;
+        }
+        let mut series = vec![0.0; TERMS + 1];
+        for n in (1..TERMS).rev() {
+            let k = n as f64;
+            series[n - 1] = (binomials[n] - m * (k + 1.0) * series[n + 1]) / k;
+        }
+        let amplitude = (1.0 - m * series[1]) / c.sqrt();
+        Self { delta, d, c, amplitude, series }
+    }
+
+    /// `A`: the logarithm's factor, 1 at the critical line.
+    pub(crate) fn amplitude(&self) -> f64 {
+        self.amplitude
+    }
+
+    /// `B` at γ.
+    pub(crate) fn value(&self, gamma: f64) -> f64 {
+        // u − 2/3, u − u1, y.
+        let x = (gamma - 1.0) * (gamma + 1.0);
+        let from_u1 = 1.0 + x + 2.0 / 3.0 * self.d;
+        let y = (x - self.d / 3.0) / self.c;
+        let sum = self.series.iter().rev().fold(0.0, |sum, &b| sum * y + b);
+        // u̇² = σ² + Δ; √(y² + m)/√c = |u̇| / (c √c √(u − u1)).
+        let slope2 = x * x * (1.0 + x) + self.delta;
+        let over_slope =
+            sum / (self.c * (self.c * from_u1).sqrt()) + self.amplitude * self.log_difference(x, from_u1, slope2);
+        gamma * gamma * over_slope
+    }
+
+    /// `(asinh(y/√m) − asinh(σ/√Δ)) / |u̇|`.
+    ///
+    /// The hyperbolic sine of the numerator is `|u̇| ν`, `ν = (y − σ√((y² + m)/P))/√(mΔ)`. With `x = u − 2/3`, `d = c − 1`:
+    /// `mΔ = d² · 2(2 + d)(3 + 2d)²/(81c²)` and `y − … = d (2x/3/(√(u − u1) + √(u + 1/3)) − √(u − u1)/3)/(c√(u − u1))`: the d cancels.
+    fn log_difference(&self, x: f64, from_u1: f64, slope2: f64) -> f64 {
+        let root = from_u1.sqrt();
+        let numerator = 2.0 / 3.0 * x / (root + (1.0 + x).sqrt()) - root / 3.0;
+        let nu = 9.0 * numerator / (root * (3.0 + 2.0 * self.d) * (2.0 * (2.0 + self.d)).sqrt());
+        nu * asinh_over(nu * nu * slope2)
+    }
+}
+
+/// `asinh(√z)/√z`, analytic at 0; `asin(√−z)/√−z` for z < 0.
+fn asinh_over(z: f64) -> f64 {
+    if z.abs() < 1e-3 {
+        // The next term is 63 z⁵/2816 < 3e-17.
+        1.0 - z * (1.0 / 6.0 - z * (3.0 / 40.0 - z * (15.0 / 336.0 - z * (105.0 / 3456.0))))
+    } else if z > 0.0 {
+        libm::asinh(z.sqrt()) / z.sqrt()
+    } else {
+        libm::asin((-z).sqrt()) / (-z).sqrt()
+    }
+}
+
+/// `e` on the weak and the trapped charts' axis, `t = √(1 − e/e_c)`: the root draws the critical line, where both are singular, away from them.
+fn slope_at_infinity(t: f64) -> f64 {
+    (1.0 - t) * (1.0 + t) * CRITICAL_E2.sqrt()
+}
+
+/// `V(v, t)`: the angle from u = ve to the periapsis, over |u̇|/(e + u); `e = e_c(1 − t²)`.
+pub(crate) fn weak(v: f64, t: f64) -> f64 {
+    let e = slope_at_infinity(t);
+    if e == 0.0 {
+        // Flat space: the roots −e, e and 1.
+        return (2.0 * (v + 1.0)).sqrt() * rf(0.5 * (v + 1.0), 1.0, 1.0);
+    }
+    let e2 = e * e;
+    e * (v + 1.0) * RealRoots::new(e2, e2 - CRITICAL_E2).to_periapsis_over_slope(v * e)
+}
+
+/// `Z(u, t)`: the angle from u to the apoapsis, over |u̇|; `e = e_c(1 − t²)`.
+pub(crate) fn trapped(u: f64, t: f64) -> f64 {
+    let e = slope_at_infinity(t);
+    let e2 = e * e;
+    RealRoots::new(e2, e2 - CRITICAL_E2).to_apoapsis_over_slope(u)
+}
+
+/// `H(u, 1/e²)`.
+pub(crate) fn radial(u: f64, inverse_e2: f64) -> f64 {
+    if inverse_e2 == 0.0 {
+        return u;
+    }
+    let e2 = 1.0 / inverse_e2;
+    without_turning_point(e2, e2 - CRITICAL_E2, 0.0, u) * e2.sqrt()
+}

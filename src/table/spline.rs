@@ -1,0 +1,201 @@
+//! Cubic splines on uniform axes: the table's interpolation.
+//!
+//! A function's values on N nodes become N + 2 B-spline coefficients; between the nodes the value is the sum of four
+//! neighbouring coefficients (sixteen in two dimensions) times the weights of [`Axis::stencil`]. The error is
+//! `h⁴ max|f⁗| / 384` an axis, nine times less than that of a cubic through four nodes, for the same work.
+//! Source: de Boor, *A Practical Guide to Splines* (1978), chapters IV and IX.
+
+use serde::{Deserialize, Serialize};
+
+/// A uniform axis whose ends lie exactly on its first and its last node.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Axis {
+    /// The first node.
+    pub(crate) start: f64,
+    /// The last node.
+    pub(crate) end: f64,
+    /// How many nodes; at least [`Axis::FEWEST`].
+    pub(crate) nodes: u32,
+}
+
+/// Four neighbouring coefficients and their weights.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stencil {
+    first: usize,
+    weights: [f64; 4],
+}
+
+impl Axis {
+    /// The end conditions take the outermost six nodes.
+    pub(crate) const FEWEST: u32 = 6;
+
+    /// The node `i`, the ends exactly.
+    pub(crate) fn node(self, i: u32) -> f64 {
+        if i + 1 == self.nodes {
+            return self.end;
+        }
+        self.start + (self.end - self.start) * (f64::from(i) / f64::from(self.nodes - 1))
+    }
+
+    /// How many coefficients the axis has.
+    pub(crate) fn coefficients(self) -> usize {
+        self.nodes as usize + 2
+    }
+
+    /// Nodes a unit of the axis.
+    pub(crate) fn scale(self) -> f64 {
+        f64::from(self.nodes - 1) / (self.end - self.start)
+    }
+}
+
+/// An axis ready for lookups.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scale {
+    start: f64,
+    per_unit: f64,
+    last_cell: i32,
+}
+
+impl Scale {
+    pub(crate) fn new(axis: Axis) -> Self {
+        Self { start: axis.start, per_unit: axis.scale(), last_cell: axis.nodes as i32 - 2 }
+    }
+
+    /// The coefficients about `x` and the uniform cubic B-spline's weights. Beyond its ends the axis continues with its
+    /// outermost cubic.
+    #[inline]
+    pub(crate) fn stencil(self, x: f64) -> Stencil {
+        let t = (x - self.start) * self.per_unit;
+        // A cast saturates, NaN included: any index stays within the axis.
+        let cell = (t as i32).clamp(0, self.last_cell);
+        let f = t - f64::from(cell);
+        let g = 1.0 - f;
+        let (f2, g2) = (f * f, g * g);
+        Stencil {
+            first: cell as usize,
+            weights: [
+                g2 * g * (1.0 / 6.0),
+                2.0 / 3.0 - f2 * (1.0 - 0.5 * f),
+                2.0 / 3.0 - g2 * (1.0 - 0.5 * g),
+                f2 * f * (1.0 / 6.0),
+            ],
+        }
+    }
+}
+
+/// The value at `stencil` of a spline of one variable.
+#[inline]
+pub(crate) fn value(coefficients: &[f64], stencil: &Stencil) -> f64 {
+    let c = &coefficients[stencil.first..stencil.first + 4];
+    let w = &stencil.weights;
+    (w[0] * c[0] + w[1] * c[1]) + (w[2] * c[2] + w[3] * c[3])
+}
+
+/// The value of a spline of two variables, stored row by row: `rows` along the slow axis, `columns` along the fast one.
+#[inline]
+pub(crate) fn value_2d(coefficients: &[f64], width: usize, rows: &Stencil, columns: &Stencil) -> f64 {
+    let first = rows.first * width + columns.first;
+    let mut sums = [0.0; 4];
+    for (k, &weight) in rows.weights.iter().enumerate() {
+        let row = &coefficients[first + k * width..first + k * width + 4];
+        for (sum, &c) in sums.iter_mut().zip(row) {
+            *sum += weight * c;
+        }
+    }
+    let w = &columns.weights;
+    (w[0] * sums[0] + w[1] * sums[1]) + (w[2] * sums[2] + w[3] * sums[3])
+}
+
+/// The B-spline coefficients of the spline through `values`, one per node; `values.len() + 2` of them.
+///
+/// Nodes: `f_i = c_i + δ²c_i/6`, one tridiagonal system, diagonally dominant, solved by elimination. Ends: turned round, that is
+/// `c = f − δ²f/6 + δ⁴f/36 − …`, taken at the second node with δ⁴f continued linearly from the next two, so that
+/// `c_1` is right to h⁶ as the inner coefficients are. (The usual "not a knot" drops the third term, and its error at the ends was
+/// measured at 4 to 10 times the inner one.)
+pub(crate) fn coefficients(values: &[f64]) -> Vec<f64> {
+    let n = values.len();
+    let at_second = |f: [f64; 6]| {
+        let second = |i: usize| f[i - 1] - 2.0 * f[i] + f[i + 1];
+        let fourth = |i: usize| second(i - 1) - 2.0 * second(i) + second(i + 1);
+        f[1] - second(1) / 6.0 + (2.0 * fourth(2) - fourth(3)) / 36.0
+    };
+    // c[i + 1] is the coefficient centred on node i.
+    let mut c = vec![0.0; n + 2];
+    c[2] = at_second(core::array::from_fn(|i| values[i]));
+    c[n - 1] = at_second(core::array::from_fn(|i| values[n - 1 - i]));
+    let mut pivots = vec![0.0; n];
+    let mut pivot = 0.0;
+    for i in 2..n - 2 {
+        // Row i: c_{i−1} + 4c_i + c_{i+1} = 6f_i, what is below the diagonal eliminated.
+        pivot = 1.0 / (4.0 - pivot);
+        pivots[i] = pivot;
+        let right = if i == n - 3 { c[n - 1] } else { 0.0 };
+        c[i + 1] = (6.0 * values[i] - c[i] - right) * pivot;
+    }
+    for i in (2..n - 3).rev() {
+        c[i + 1] -= pivots[i] * c[i + 2];
+    }
+    c[1] = 6.0 * values[1] - 4.0 * c[2] - c[3];
+    c[0] = 6.0 * values[0] - 4.0 * c[1] - c[2];
+    c[n] = 6.0 * values[n - 2] - 4.0 * c[n - 1] - c[n - 2];
+    c[n + 1] = 6.0 * values[n - 1] - 4.0 * c[n] - c[n - 1];
+    c
+}
+
+/// The coefficients of the two-dimensional spline through `values` (rows of `columns` nodes): first along each row, then
+/// along each column.
+pub(crate) fn coefficients_2d(values: &[f64], columns: usize) -> Vec<f64> {
+    let along_rows: Vec<Vec<f64>> = values.chunks_exact(columns).map(coefficients).collect();
+    let width = columns + 2;
+    let mut result = vec![0.0; (along_rows.len() + 2) * width];
+    for j in 0..width {
+        let column: Vec<f64> = along_rows.iter().map(|row| row[j]).collect();
+        for (i, c) in coefficients(&column).into_iter().enumerate() {
+            result[i * width + j] = c;
+        }
+    }
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cubic is its own spline, up to the ends and beyond them.
+    #[test]
+    fn cubics_are_reproduced() {
+        let cubic = |x: f64| 0.3 - 1.2 * x + 0.7 * x * x - 2.1 * x * x * x;
+        for nodes in [6, 7, 8, 20] {
+            let axis = Axis { start: -1.0, end: 2.0, nodes };
+            let values: Vec<f64> = (0..nodes).map(|i| cubic(axis.node(i))).collect();
+            let c = coefficients(&values);
+            for k in -1..32 {
+                let x = -1.0 + f64::from(k) * 0.1;
+                let got = value(&c, &Scale::new(axis).stencil(x));
+                assert!((got - cubic(x)).abs() < 1e-12, "{nodes} nodes at {x}: {got}");
+            }
+        }
+    }
+
+    /// The error falls with the fourth power of the node distance.
+    #[test]
+    fn fourth_order() {
+        let f = |x: f64, y: f64| libm::exp(x) * libm::sin(3.0 * y);
+        let error = |nodes: u32| {
+            let axis = Axis { start: 0.0, end: 1.0, nodes };
+            let values: Vec<f64> =
+                (0..nodes * nodes).map(|k| f(axis.node(k % nodes), axis.node(k / nodes))).collect();
+            let c = coefficients_2d(&values, nodes as usize);
+            let mut worst: f64 = 0.0;
+            for k in 0..400 {
+                let (x, y) = (f64::from(k % 20) / 19.3, f64::from(k / 20) / 19.7);
+                let scale = Scale::new(axis);
+                let got = value_2d(&c, axis.coefficients(), &scale.stencil(y), &scale.stencil(x));
+                worst = worst.max((got - f(x, y)).abs());
+            }
+            worst
+        };
+        let ratio = error(20) / error(39);
+        assert!((12.0..24.0).contains(&ratio), "halving the distance changed the error by {ratio}, not 16");
+    }
+}
