@@ -28,7 +28,9 @@ pub fn rf(x: f64, y: f64, z: f64) -> f64 {
     let e2 = dx * dy - dz * dz;
     let e3 = dx * dy * dz;
     // DLMF 19.36.1, through the seventh order.
-    let series = 1.0 - e2 / 10.0 + e3 / 14.0 + e2 * e2 / 24.0 - 3.0 * e2 * e3 / 44.0 - 5.0 * e2 * e2 * e2 / 208.0
+    let series = 1.0 - e2 / 10.0 + e3 / 14.0 + e2 * e2 / 24.0
+        - 3.0 * e2 * e3 / 44.0
+        - 5.0 * e2 * e2 * e2 / 208.0
         + 3.0 * e3 * e3 / 104.0
         + e2 * e2 * e3 / 16.0;
     series / mean.sqrt()
@@ -47,7 +49,10 @@ mod tests {
             (2.0, 3.0, 4.0, 0.58408284167715),
         ] {
             let got = rf(x, y, z);
-            assert!((got - value).abs() < 1e-13, "R_F({x}, {y}, {z}) = {got}, published {value}");
+            assert!(
+                (got - value).abs() < 1e-13,
+                "R_F({x}, {y}, {z}) = {got}, published {value}"
+            );
         }
     }
 
@@ -57,8 +62,15 @@ mod tests {
         for k in 1..60 {
             let y = f64::from(k) * 0.37 + 1.0;
             let truth = libm::atan((y - 1.0).sqrt()) / (y - 1.0).sqrt();
-            assert!((rf(1.0, y, y) / truth - 1.0).abs() < 2e-15, "R_F(1, {y}, {y})");
-            assert_eq!(rf(4.0, 4.0 * y, 4.0), rf(1.0, y, 1.0) / 2.0, "homogeneity is exact for powers of four");
+            assert!(
+                (rf(1.0, y, y) / truth - 1.0).abs() < 2e-15,
+                "R_F(1, {y}, {y})"
+            );
+            assert_eq!(
+                rf(4.0, 4.0 * y, 4.0),
+                rf(1.0, y, 1.0) / 2.0,
+                "homogeneity is exact for powers of four"
+            );
         }
     }
 }

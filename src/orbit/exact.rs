@@ -33,7 +33,9 @@ impl SweptAngles for Exact {
         let roots = RealRoots::new(orbit.e2, orbit.delta);
         match orbit.family {
             Family::Trapped => roots.to_apoapsis(from) + roots.to_apoapsis(to),
-            Family::Scattered | Family::Monotone => roots.to_periapsis(from) + roots.to_periapsis(to),
+            Family::Scattered | Family::Monotone => {
+                roots.to_periapsis(from) + roots.to_periapsis(to)
+            }
         }
     }
 }
@@ -73,7 +75,12 @@ impl RealRoots {
             2.0 / 3.0 * half * half - sin_zeta / SQRT_3
         };
         let half = libm::sin(0.5 * eta);
-        Self { u1, a: 2.0 / SQRT_3 * sin_zeta, delta: 2.0 / SQRT_3 * sin_eta, shift: 2.0 / 3.0 * half * half }
+        Self {
+            u1,
+            a: 2.0 / SQRT_3 * sin_zeta,
+            delta: 2.0 / SQRT_3 * sin_eta,
+            shift: 2.0 / 3.0 * half * half,
+        }
     }
 
     /// `∫ du/√P` from u to the periapsis u2, for a point outside the photon sphere.
@@ -94,7 +101,8 @@ impl RealRoots {
     pub(crate) fn to_periapsis_over_slope(self, u: f64) -> f64 {
         let from_u1 = u - self.u1;
         let to_u3 = 0.5 * self.delta - self.shift - three_u_minus_two(u) / 3.0;
-        2.0 / (to_u3 * from_u1 * self.a * self.delta).sqrt() * rf(from_u1 / self.a, to_u3 / self.delta, 1.0)
+        2.0 / (to_u3 * from_u1 * self.a * self.delta).sqrt()
+            * rf(from_u1 / self.a, to_u3 / self.delta, 1.0)
     }
 
     /// `∫ du/√P` from the apoapsis u3 to u, for a point inside the photon sphere.
@@ -115,7 +123,8 @@ impl RealRoots {
         let from_u2 = three_u_minus_two(u) / 3.0 + self.shift + 0.5 * self.delta;
         let x = from_u2 - self.delta;
         let b = self.a + self.delta;
-        2.0 / (self.delta * b * (u - self.u1) * from_u2).sqrt() * rf(1.0, 1.0 + x / self.delta, 1.0 + x / b)
+        2.0 / (self.delta * b * (u - self.u1) * from_u2).sqrt()
+            * rf(1.0, 1.0 + x / self.delta, 1.0 + x / b)
     }
 }
 
@@ -143,7 +152,11 @@ pub(crate) fn without_turning_point(e2: f64, delta: f64, from: f64, to: f64) -> 
     let (rx, ry) = ((px * px + q * q).sqrt(), (py * py + q * q).sqrt());
     let root = (x + minus_u1).sqrt() + (y + minus_u1).sqrt();
     // √Q2(x) + √Q2(y) − (x − y): with p between y and x, |u − p| cancels against the width and q²/(√Q2 + |u − p|) is left.
-    let excess = if px > 0.0 && py < 0.0 { q * q / (rx + px) + q * q / (ry - py) } else { rx + ry - width };
+    let excess = if px > 0.0 && py < 0.0 {
+        q * q / (rx + px) + q * q / (ry - py)
+    } else {
+        rx + ry - width
+    };
     let s = root * root * excess * (rx + ry + width);
     let v = 2.0 * (c * c + q * q).sqrt();
     // D − V without subtracting: 4(c² − c² − q²)/(D + V).

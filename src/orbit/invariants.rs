@@ -56,7 +56,13 @@ impl Orbit {
         } else {
             Family::Trapped
         };
-        Self { start: Point { u, slope }, inward: w > 0.0, e2: slope * slope + u * u * (1.0 - u), delta, family }
+        Self {
+            start: Point { u, slope },
+            inward: w > 0.0,
+            e2: slope * slope + u * u * (1.0 - u),
+            delta,
+            family,
+        }
     }
 
     /// How the ray ends.
@@ -88,7 +94,10 @@ impl Orbit {
             Family::Scattered => three_u_minus_two(u) < 0.0,
             Family::Trapped => three_u_minus_two(u) > 0.0,
         };
-        (same_side && squared > 0.0).then(|| Point { u, slope: squared.sqrt() })
+        (same_side && squared > 0.0).then(|| Point {
+            u,
+            slope: squared.sqrt(),
+        })
     }
 
     /// The orbit's end: r = ∞ or the horizon. There `|du/dφ| = e`.
@@ -97,14 +106,21 @@ impl Orbit {
             Fate::Capture => 1.0,
             Fate::Escape => 0.0,
         };
-        Point { u, slope: self.e2.sqrt() }
+        Point {
+            u,
+            slope: self.e2.sqrt(),
+        }
     }
 }
 
 /// `3u − 2`, rounded once: for u ≥ ½ both summands of `(2u − 1) + (u − 1)` are exact. Never zero, since 2/3 is no
 /// floating-point number.
 pub(crate) fn three_u_minus_two(u: f64) -> f64 {
-    if u >= 0.5 { (2.0 * u - 1.0) + (u - 1.0) } else { 3.0 * u - 2.0 }
+    if u >= 0.5 {
+        (2.0 * u - 1.0) + (u - 1.0)
+    } else {
+        3.0 * u - 2.0
+    }
 }
 
 /// `s = |u − 2/3| √(u + 1/3)`: the slope `|du/dφ|` of the critical ray at u, since `s² = 4/27 − u²(1 − u)`.
@@ -136,7 +152,13 @@ fn distance_from_critical(u: f64, slope: f64) -> f64 {
     let y = Double::product(3.0, u).add(1.0);
     let squared = Double::product(slope, slope);
     let critical = x.mul(x).mul(y);
-    squared.mul(Double { high: 27.0, low: 0.0 }).sub(critical) / 27.0
+    squared
+        .mul(Double {
+            high: 27.0,
+            low: 0.0,
+        })
+        .sub(critical)
+        / 27.0
 }
 
 /// An unevaluated sum of two doubles, |low| ≤ ulp(high)/2.
@@ -151,14 +173,20 @@ impl Double {
     fn sum(a: f64, b: f64) -> Self {
         let high = a + b;
         let part = high - a;
-        Self { high, low: (a - (high - part)) + (b - part) }
+        Self {
+            high,
+            low: (a - (high - part)) + (b - part),
+        }
     }
 
     /// a·b exactly (Dekker 1971): by splitting, so that no fused multiply-add is needed.
     fn product(a: f64, b: f64) -> Self {
         let high = a * b;
         let ((ah, al), (bh, bl)) = (split(a), split(b));
-        Self { high, low: ((ah * bh - high) + ah * bl + al * bh) + al * bl }
+        Self {
+            high,
+            low: ((ah * bh - high) + ah * bl + al * bh) + al * bl,
+        }
     }
 
     fn add(self, b: f64) -> Self {
@@ -168,7 +196,10 @@ impl Double {
 
     fn mul(self, other: Self) -> Self {
         let p = Self::product(self.high, other.high);
-        Self::sum(p.high, p.low + (self.high * other.low + self.low * other.high))
+        Self::sum(
+            p.high,
+            p.low + (self.high * other.low + self.low * other.high),
+        )
     }
 
     /// The difference, as one double.

@@ -87,22 +87,30 @@ pub struct Event {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum OrbitError {
     /// The ray does not start outside the horizon.
-    #[error("u0 = {u:?} is not allowed: a ray starts outside the horizon and within 1e100 radii of it, 1e-100 ≤ u0 < 1")]
+    #[error(
+        "u0 = {u:?} is not allowed: a ray starts outside the horizon and within 1e100 radii of it, 1e-100 ≤ u0 < 1"
+    )]
     Outside {
         /// The inverse radius given.
         u: f64,
     },
     /// The ray has no direction.
-    #[error("dudphi is not a number: give du/dφ, or inf / -inf for a ray straight at or away from the hole")]
+    #[error(
+        "dudphi is not a number: give du/dφ, or inf / -inf for a ray straight at or away from the hole"
+    )]
     NoSlope,
     /// A radius to be watched is no radius outside the horizon.
-    #[error("radius {radius:?} is not allowed: crossings are reported for radii above 1, the horizon, up to 1e100")]
+    #[error(
+        "radius {radius:?} is not allowed: crossings are reported for radii above 1, the horizon, up to 1e100"
+    )]
     Radius {
         /// The radius given.
         radius: f64,
     },
     /// A stepped solution did not end.
-    #[error("no end found within {steps} steps (reached φ = {angle:?}): the ray winds near the photon sphere; use a larger step limit or the exact method")]
+    #[error(
+        "no end found within {steps} steps (reached φ = {angle:?}): the ray winds near the photon sphere; use a larger step limit or the exact method"
+    )]
     StepLimit {
         /// The steps taken.
         steps: u64,
@@ -131,7 +139,10 @@ pub(crate) fn inverse_radii(radii: &[f64]) -> Result<Vec<WatchedRadius>, OrbitEr
         if !(radius > 1.0 && radius <= 1.0 / MIN_U) {
             return Err(OrbitError::Radius { radius });
         }
-        watched.push(WatchedRadius { radius, u: 1.0 / radius });
+        watched.push(WatchedRadius {
+            radius,
+            u: 1.0 / radius,
+        });
     }
     watched.sort_by(|a, b| b.radius.total_cmp(&a.radius));
     watched.dedup_by(|a, b| a.radius == b.radius);

@@ -1,7 +1,7 @@
 //! A ray's events, put together from swept angles. Written once for every method that knows those.
 
 use super::invariants::{Family, Orbit, Point};
-use super::{Event, EventKind, Orbits, OrbitError, Ray, WatchedRadius, inverse_radii};
+use super::{Event, EventKind, OrbitError, Orbits, Ray, WatchedRadius, inverse_radii};
 
 /// A method that knows the angle a ray sweeps between two points of its orbit.
 pub trait SweptAngles: Sync {
@@ -23,12 +23,28 @@ pub trait SweptAngles: Sync {
     /// The angles at which the orbit crosses inverse radius `u`: inbound, outbound. The start is no crossing.
     fn crossings(&self, orbit: &Orbit, u: f64) -> Crossings {
         let start = orbit.start;
-        let Some(point) = orbit.point_at(u) else { return Crossings::default() };
-        let beyond = if orbit.inward { u > start.u } else { u < start.u };
+        let Some(point) = orbit.point_at(u) else {
+            return Crossings::default();
+        };
+        let beyond = if orbit.inward {
+            u > start.u
+        } else {
+            u < start.u
+        };
         let first = beyond.then(|| self.direct(orbit, start, point));
         // What lies on the way to the turning point is crossed again after it, and so is all that lies behind the start.
         let second = turns(orbit).then(|| self.around(orbit, start, point));
-        if orbit.inward { Crossings { inbound: first, outbound: second } } else { Crossings { inbound: second, outbound: first } }
+        if orbit.inward {
+            Crossings {
+                inbound: first,
+                outbound: second,
+            }
+        } else {
+            Crossings {
+                inbound: second,
+                outbound: first,
+            }
+        }
     }
 }
 
@@ -59,7 +75,13 @@ impl<T: SweptAngles> Orbits for T {
         let mut outbound = Vec::with_capacity(watched.len());
         for &WatchedRadius { radius, u } in &watched {
             let crossings = self.crossings(&orbit, u);
-            let event = |kind| move |angle| Event { kind, radius, angle };
+            let event = |kind| {
+                move |angle| Event {
+                    kind,
+                    radius,
+                    angle,
+                }
+            };
             inbound.extend(crossings.inbound.map(event(EventKind::Inbound)));
             outbound.extend(crossings.outbound.map(event(EventKind::Outbound)));
         }

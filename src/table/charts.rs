@@ -88,7 +88,13 @@ impl CriticalRow {
             series[n - 1] = (binomials[n] - m * (k + 1.0) * series[n + 1]) / k;
         }
         let amplitude = (1.0 - m * series[1]) / c.sqrt();
-        Self { delta, d, c, amplitude, series }
+        Self {
+            delta,
+            d,
+            c,
+            amplitude,
+            series,
+        }
     }
 
     /// `A`: the logarithm's factor, 1 at the critical line.
@@ -105,8 +111,8 @@ impl CriticalRow {
         let sum = self.series.iter().rev().fold(0.0, |sum, &b| sum * y + b);
         // u̇² = σ² + Δ; √(y² + m)/√c = |u̇| / (c √c √(u − u1)).
         let slope2 = x * x * (1.0 + x) + self.delta;
-        let over_slope =
-            sum / (self.c * (self.c * from_u1).sqrt()) + self.amplitude * self.log_difference(x, from_u1, slope2);
+        let over_slope = sum / (self.c * (self.c * from_u1).sqrt())
+            + self.amplitude * self.log_difference(x, from_u1, slope2);
         gamma * gamma * over_slope
     }
 

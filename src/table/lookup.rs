@@ -47,7 +47,12 @@ impl<'a> Chart<'a> {
 
     #[inline]
     fn at(&self, rows: &Stencil, place: f64) -> f64 {
-        value_2d(self.coefficients, self.width, rows, &self.place.stencil(place))
+        value_2d(
+            self.coefficients,
+            self.width,
+            rows,
+            &self.place.stencil(place),
+        )
     }
 }
 
@@ -58,7 +63,10 @@ impl<'a> Lookup<'a> {
         let (amplitude, rest) = numbers.split_at(axis.coefficients());
         numbers = rest;
         Self {
-            amplitude: Curve { coefficients: amplitude, axis: Scale::new(axis) },
+            amplitude: Curve {
+                coefficients: amplitude,
+                axis: Scale::new(axis),
+            },
             critical: Chart::take(&mut numbers, spec.critical_axes()),
             weak: Chart::take(&mut numbers, spec.weak_axes()),
             trapped: Chart::take(&mut numbers, spec.trapped_axes()),
@@ -78,7 +86,8 @@ impl<'a> Lookup<'a> {
         } else {
             let rows = self.weak.orbit.stencil(t);
             let b = 1.0 / e;
-            let angle = |point: Point| point.slope / (e + point.u) * self.weak.at(&rows, point.u * b);
+            let angle =
+                |point: Point| point.slope / (e + point.u) * self.weak.at(&rows, point.u * b);
             (angle(from), angle(to))
         }
     }
@@ -91,7 +100,10 @@ impl<'a> Lookup<'a> {
             let gamma2 = point.u + 1.0 / 3.0;
             let gamma = gamma2.sqrt();
             let s = three_u_minus_two(point.u).abs() * (1.0 / 3.0) * gamma;
-            (point.slope / gamma2 * self.critical.at(&rows, gamma), s + point.slope)
+            (
+                point.slope / gamma2 * self.critical.at(&rows, gamma),
+                s + point.slope,
+            )
         })
     }
 
@@ -117,8 +129,16 @@ impl SweptAngles for Lookup<'_> {
         let [(smooth0, arg0), (smooth1, arg1)] = self.critical_parts(e, from, to);
         // On one side of the photon sphere √|Δ| cancels between the logarithms; across it (Δ > 0) they add up.
         let across = (three_u_minus_two(from.u) < 0.0) != (three_u_minus_two(to.u) < 0.0);
-        let ratio = if across { arg0 * arg1 / orbit.delta } else { arg1 / arg0 };
-        let sign = if three_u_minus_two(to.u) < 0.0 { -1.0 } else { 1.0 };
+        let ratio = if across {
+            arg0 * arg1 / orbit.delta
+        } else {
+            arg1 / arg0
+        };
+        let sign = if three_u_minus_two(to.u) < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
         (sign * self.amplitude(e) * libm::log(ratio) + (smooth1 - smooth0)).abs()
     }
 
@@ -132,6 +152,10 @@ impl SweptAngles for Lookup<'_> {
         let [(smooth0, arg0), (smooth1, arg1)] = self.critical_parts(e, from, to);
         let logarithms = self.amplitude(e) * libm::log(arg0 * arg1 / -orbit.delta);
         let smooth = smooth0 + smooth1;
-        if orbit.family == Family::Trapped { logarithms + smooth } else { logarithms - smooth }
+        if orbit.family == Family::Trapped {
+            logarithms + smooth
+        } else {
+            logarithms - smooth
+        }
     }
 }

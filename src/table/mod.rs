@@ -1,9 +1,80 @@
-//! The table.
+//! The table: every ray's swept angles, solved once over a dense grid and read from a mapped file ever after.
+//!
+//! No disk and no camera is in it: it answers the same question as every other method (see [`crate::orbit`]), for all rays outside
+//! the horizon. How: [`charts`] (what is stored, and why it is smooth), [`spline`](self) (how it is interpolated), [`format`]
+//! (the file), [`generate`] (how it is made).
+
+#[cfg(target_endian = "big")]
+compile_error!(
+    "a table's numbers are read in place as little-endian f64: darkness needs a little-endian machine"
+);
 
 mod charts;
-pub mod generate;
-pub mod lookup;
-pub mod spec;
+mod file;
+pub mod format;
+mod generate;
+mod lookup;
+mod measure;
+mod spec;
 mod spline;
-pub fn tmp_numbers(spec: &spec::Spec) -> Vec<f64> { generate::numbers(spec, &||()) }
-pub fn tmp_lookup<'a>(spec: &spec::Spec, n: &'a [f64]) -> lookup::Lookup<'a> { lookup::Lookup::new(spec, n) }
+
+pub use file::{TableError, default_path, open, save};
+pub use format::{FormatError, Metadata};
+pub use generate::{Progress, generate};
+pub use lookup::Lookup;
+pub use measure::{Measured, measure};
+pub use spec::{Nodes, Spec};
+
+use crate::orbit::{Event, OrbitError, Orbits, Ray};
+use format::Layout;
+
+/// A table over any bytes that begin at a multiple of 8: a mapped file, or [`Memory`].
+#[derive(Debug, Clone)]
+pub struct Table<B> {
+    bytes: B,
+    layout: Layout,
+}
+
+/// The bytes of a table that is not in a file: aligned for its numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Memory(Vec<u64>);
+
+impl AsRef<[u8]> for Memory {
+    fn as_ref(&self) -> &[u8] {
+        bytemuck::cast_slice(&self.0)
+    }
+}
+
+impl<B: AsRef<[u8]>> Table<B> {
+    /// A table from its bytes, every one of which is checked: see [`format`].
+    ///
+    /// # Errors
+    /// [`FormatError`]: what is wrong with the bytes.
+    pub fn from_bytes(bytes: B) -> Result<Self, FormatError> {
+        let layout = format::parse(bytes.as_ref())?;
+        Ok(Self { bytes, layout })
+    }
+
+    /// What the table says of itself.
+    pub fn metadata(&self) -> &Metadata {
+        &self.layout.metadata
+    }
+
+    /// The whole file.
+    pub fn bytes(&self) -> &[u8] {
+        self.bytes.as_ref()
+    }
+
+    /// The table, ready for lookups. Take it once, outside the loop.
+    pub fn lookup(&self) -> Lookup<'_> {
+        // The cast was checked when the table was opened, and bytes behind `AsRef` stay where they are.
+        let numbers = format::numbers(self.bytes(), self.layout.numbers_at).unwrap_or_default();
+        Lookup::new(&self.layout.metadata.spec, numbers)
+    }
+}
+
+impl<B: AsRef<[u8]> + Sync> Orbits for Table<B> {
+    fn follow(&self, ray: Ray, radii: &[f64]) -> Result<Vec<Event>, OrbitError> {
+        self.lookup().follow(ray, radii)
+    }
+}

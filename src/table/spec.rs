@@ -46,8 +46,16 @@ pub(crate) struct Axes {
 impl Axes {
     fn new(nodes: Nodes, place: (f64, f64), orbit: (f64, f64)) -> Self {
         Self {
-            place: Axis { start: place.0, end: place.1, nodes: nodes.place },
-            orbit: Axis { start: orbit.0, end: orbit.1, nodes: nodes.orbit },
+            place: Axis {
+                start: place.0,
+                end: place.1,
+                nodes: nodes.place,
+            },
+            orbit: Axis {
+                start: orbit.0,
+                end: orbit.1,
+                nodes: nodes.orbit,
+            },
         }
     }
 
@@ -74,13 +82,20 @@ impl Spec {
 
     /// The axis of A.
     pub(crate) fn amplitude_axis(&self) -> Axis {
-        Axis { nodes: self.amplitude, ..self.critical_axes().orbit }
+        Axis {
+            nodes: self.amplitude,
+            ..self.critical_axes().orbit
+        }
     }
 
     pub(crate) fn critical_axes(&self) -> Axes {
         // u from 0 to 1.
         let gamma = ((1.0 / 3.0_f64).sqrt(), (4.0 / 3.0_f64).sqrt());
-        Axes::new(self.critical, gamma, (charts::LOWER_E2.sqrt(), charts::UPPER_E2.sqrt()))
+        Axes::new(
+            self.critical,
+            gamma,
+            (charts::LOWER_E2.sqrt(), charts::UPPER_E2.sqrt()),
+        )
     }
 
     pub(crate) fn weak_axes(&self) -> Axes {
@@ -93,7 +108,10 @@ impl Spec {
 
     /// `t = √(1 − e/e_c)` from e = 0 to the critical chart.
     fn t_range() -> (f64, f64) {
-        (1.0, (1.0 - charts::LOWER_E2.sqrt() * charts::CRITICAL_B).sqrt())
+        (
+            1.0,
+            (1.0 - charts::LOWER_E2.sqrt() * charts::CRITICAL_B).sqrt(),
+        )
     }
 
     pub(crate) fn radial_axes(&self) -> Axes {
@@ -103,10 +121,15 @@ impl Spec {
     /// How many numbers the table holds: the charts' coefficients, one after the other.
     pub(crate) fn coefficients(&self) -> usize {
         self.amplitude_axis().coefficients()
-            + [self.critical_axes(), self.weak_axes(), self.trapped_axes(), self.radial_axes()]
-                .into_iter()
-                .map(Axes::coefficients)
-                .sum::<usize>()
+            + [
+                self.critical_axes(),
+                self.weak_axes(),
+                self.trapped_axes(),
+                self.radial_axes(),
+            ]
+            .into_iter()
+            .map(Axes::coefficients)
+            .sum::<usize>()
     }
 
     /// Whether every axis has as many nodes as a spline needs, and no more than a table may have.

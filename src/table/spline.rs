@@ -58,7 +58,11 @@ pub(crate) struct Scale {
 
 impl Scale {
     pub(crate) fn new(axis: Axis) -> Self {
-        Self { start: axis.start, per_unit: axis.scale(), last_cell: axis.nodes as i32 - 2 }
+        Self {
+            start: axis.start,
+            per_unit: axis.scale(),
+            last_cell: axis.nodes as i32 - 2,
+        }
     }
 
     /// The coefficients about `x` and the uniform cubic B-spline's weights. Beyond its ends the axis continues with its
@@ -93,7 +97,12 @@ pub(crate) fn value(coefficients: &[f64], stencil: &Stencil) -> f64 {
 
 /// The value of a spline of two variables, stored row by row: `rows` along the slow axis, `columns` along the fast one.
 #[inline]
-pub(crate) fn value_2d(coefficients: &[f64], width: usize, rows: &Stencil, columns: &Stencil) -> f64 {
+pub(crate) fn value_2d(
+    coefficients: &[f64],
+    width: usize,
+    rows: &Stencil,
+    columns: &Stencil,
+) -> f64 {
     let first = rows.first * width + columns.first;
     let mut sums = [0.0; 4];
     for (k, &weight) in rows.weights.iter().enumerate() {
@@ -166,13 +175,20 @@ mod tests {
     fn cubics_are_reproduced() {
         let cubic = |x: f64| 0.3 - 1.2 * x + 0.7 * x * x - 2.1 * x * x * x;
         for nodes in [6, 7, 8, 20] {
-            let axis = Axis { start: -1.0, end: 2.0, nodes };
+            let axis = Axis {
+                start: -1.0,
+                end: 2.0,
+                nodes,
+            };
             let values: Vec<f64> = (0..nodes).map(|i| cubic(axis.node(i))).collect();
             let c = coefficients(&values);
             for k in -1..32 {
                 let x = -1.0 + f64::from(k) * 0.1;
                 let got = value(&c, &Scale::new(axis).stencil(x));
-                assert!((got - cubic(x)).abs() < 1e-12, "{nodes} nodes at {x}: {got}");
+                assert!(
+                    (got - cubic(x)).abs() < 1e-12,
+                    "{nodes} nodes at {x}: {got}"
+                );
             }
         }
     }
@@ -182,20 +198,33 @@ mod tests {
     fn fourth_order() {
         let f = |x: f64, y: f64| libm::exp(x) * libm::sin(3.0 * y);
         let error = |nodes: u32| {
-            let axis = Axis { start: 0.0, end: 1.0, nodes };
-            let values: Vec<f64> =
-                (0..nodes * nodes).map(|k| f(axis.node(k % nodes), axis.node(k / nodes))).collect();
+            let axis = Axis {
+                start: 0.0,
+                end: 1.0,
+                nodes,
+            };
+            let values: Vec<f64> = (0..nodes * nodes)
+                .map(|k| f(axis.node(k % nodes), axis.node(k / nodes)))
+                .collect();
             let c = coefficients_2d(&values, nodes as usize);
             let mut worst: f64 = 0.0;
             for k in 0..400 {
                 let (x, y) = (f64::from(k % 20) / 19.3, f64::from(k / 20) / 19.7);
                 let scale = Scale::new(axis);
-                let got = value_2d(&c, axis.coefficients(), &scale.stencil(y), &scale.stencil(x));
+                let got = value_2d(
+                    &c,
+                    axis.coefficients(),
+                    &scale.stencil(y),
+                    &scale.stencil(x),
+                );
                 worst = worst.max((got - f(x, y)).abs());
             }
             worst
         };
         let ratio = error(20) / error(39);
-        assert!((12.0..24.0).contains(&ratio), "halving the distance changed the error by {ratio}, not 16");
+        assert!(
+            (12.0..24.0).contains(&ratio),
+            "halving the distance changed the error by {ratio}, not 16"
+        );
     }
 }
