@@ -1,6 +1,9 @@
 //! **darkness** renders what a black hole does to the light of its accretion disk.
 
+pub mod cli;
+pub mod isoradial;
 pub mod orbit;
 pub mod output;
+pub mod render;
 pub mod scene;
 pub mod table;

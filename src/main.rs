@@ -1,1 +1,7 @@
-fn main() {}
+//! The `darkness` program: see `darkness --help`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    darkness::cli::run()
+}

@@ -56,7 +56,7 @@ mod tests {
         }
     }
 
-    /// R_F(x, y, y) is elementary (DLMF 19.6.15: R_C): atan and ln.
+    /// `R_F(x, y, y)` is elementary (DLMF 19.6.15), an arctangent for y > x.
     #[test]
     fn elementary_cases() {
         for k in 1..60 {

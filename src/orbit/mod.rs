@@ -32,7 +32,7 @@ impl Ray {
     /// [`OrbitError::Outside`] where `u` is not within those bounds, [`OrbitError::NoSlope`] where `dudphi`
     /// is not a number.
     pub fn new(u: f64, dudphi: f64) -> Result<Self, OrbitError> {
-        if !(u >= MIN_U && u < 1.0) {
+        if !(MIN_U..1.0).contains(&u) {
             return Err(OrbitError::Outside { u });
         }
         if dudphi.is_nan() {

@@ -1,1 +1,244 @@
-//! Scenes.
+//! Scenes: where the camera stands, where the disk lies, how large the picture is.
+//!
+//! A [`Scene`] is read from TOML, whole and checked: every number is finite, the camera stands outside the horizon
+//! and outside the disk's matter and looks somewhere, the disk's orbits are stable. [`View`] turns it into what a
+//! frame computes with, one ray a pixel.
+//!
+//! ```toml
+//! [camera]
+//! position = [29.5442, 0.0, 5.2094]  # required; the hole is at the origin; 1 < r ≤ 1e15
+//! focus    = [0.0, 0.0, 0.0]         # default: the hole
+//! up       = [0.0, 0.0, 1.0]         # default: +z
+//! fov      = 30.0                    # required; vertical field of view, degrees, 0 < fov < 180
+//!
+//! [disk]
+//! inner  = 3.0                       # required; ≥ 3, the innermost stable circular orbit
+//! outer  = 12.0                      # required; > inner
+//! normal = [0.0, 0.0, 1.0]           # default: +z
+//!
+//! [image]
+//! width  = 1920                      # required
+//! height = 1080                      # required
+//! antialias = false                  # default
+//! ```
+//!
+//! Lengths are in Schwarzschild radii, directions have any length but zero.
+
+mod builtin;
+mod camera;
+mod error;
+mod file;
+mod validate;
+mod vector;
+
+use std::path::Path;
+
+use glam::DVec3;
+
+pub use builtin::{Builtin, builtins};
+pub use camera::{Affine, PixelRay, View};
+pub use error::SceneError;
+pub use validate::{FARTHEST_CAMERA, HORIZON_RADIUS, ISCO_RADIUS, MAX_IMAGE_SIDE, MAX_PIXELS};
+
+/// The name of the scene rendered where none is asked for.
+pub const DEFAULT_SCENE: &str = "classic";
+
+/// A static observer's camera.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    /// Where it stands, in Schwarzschild radii from the hole.
+    pub position: DVec3,
+    /// The point at the picture's centre.
+    pub focus: DVec3,
+    /// The direction that is up in the picture, of any length.
+    pub up: DVec3,
+    /// The vertical field of view, in degrees.
+    pub fov_degrees: f64,
+}
+
+/// A thin disk around the hole.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Disk {
+    /// The inner edge's radius, in Schwarzschild radii.
+    pub inner: f64,
+    /// The outer edge's radius, in Schwarzschild radii.
+    pub outer: f64,
+    /// The direction of the disk's axis, of any length.
+    pub normal: DVec3,
+}
+
+/// A picture's size, in pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ImageSize {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+/// A checked scene: whatever holds one need check nothing again.
+///
+/// ```
+/// use darkness::scene::Scene;
+///
+/// let scene = Scene::from_toml(
+///     "[camera]\nposition = [20, 0, 5]\nfov = 40\n\
+///      [disk]\ninner = 3\nouter = 12\n\
+///      [image]\nwidth = 640\nheight = 360\n",
+/// )?;
+/// assert_eq!(scene.disk().outer, 12.0);
+/// # Ok::<(), darkness::scene::SceneError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scene {
+    camera: Camera,
+    disk: Disk,
+    image: ImageSize,
+}
+
+impl Scene {
+    /// Reads a scene from its TOML form, which the [module's page](self) shows.
+    ///
+    /// # Errors
+    /// [`SceneError::Toml`] with line and column where the text is no TOML, a key is missing, unknown or of the wrong
+    /// type; else the variant that names the value and what is allowed.
+    pub fn from_toml(text: &str) -> Result<Self, SceneError> {
+        validate::scene(file::SceneFile::parse(text)?)
+    }
+
+    /// The built-in scene of that name, if there is one; [`builtins`] lists them.
+    pub fn builtin(name: &str) -> Option<Self> {
+        let builtin = builtins().iter().find(|builtin| builtin.name() == name)?;
+        Self::from_toml(builtin.toml()).ok()
+    }
+
+    /// The built-in scene of that name, or else the scene in the TOML file at that path.
+    ///
+    /// A file that is called like a built-in scene is reached as `./classic`.
+    ///
+    /// # Errors
+    /// [`SceneError::Unknown`] where there is neither, [`SceneError::Read`] for a file that cannot be read,
+    /// [`SceneError::InFile`] for one that holds no valid scene.
+    pub fn load(path_or_name: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let path = path_or_name.as_ref();
+        if let Some(scene) = path.to_str().and_then(Self::builtin) {
+            return Ok(scene);
+        }
+        let text = std::fs::read_to_string(path).map_err(|error| {
+            let path = path.to_owned();
+            if error.kind() == std::io::ErrorKind::NotFound {
+                SceneError::Unknown { path }
+            } else {
+                SceneError::Read { path, error }
+            }
+        })?;
+        Self::from_toml(&text).map_err(|error| SceneError::InFile {
+            path: path.to_owned(),
+            error: Box::new(error),
+        })
+    }
+
+    /// The same scene as a picture of another size; the vertical field of view stays.
+    ///
+    /// # Errors
+    /// [`SceneError::ImageSide`] and [`SceneError::ImagePixels`] for a size that is not allowed.
+    pub fn with_size(&self, width: u32, height: u32) -> Result<Self, SceneError> {
+        let image = validate::image_size(i64::from(width), i64::from(height))?;
+        Ok(Self { image, ..*self })
+    }
+
+    /// The scene's TOML form with every key written out; [`Scene::from_toml`] reads the same scene back.
+    pub fn to_toml(&self) -> String {
+        file::SceneFile::from(self).to_string()
+    }
+
+    /// The camera.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// The disk.
+    pub fn disk(&self) -> &Disk {
+        &self.disk
+    }
+
+    /// The picture's size.
+    pub fn image(&self) -> ImageSize {
+        self.image
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn load_takes_a_builtin_name() {
+        assert_eq!(Scene::load("face-on").ok(), Scene::builtin("face-on"));
+        assert!(Scene::builtin(DEFAULT_SCENE).is_some());
+        assert!(Scene::builtin("no-such-scene").is_none());
+    }
+
+    #[test]
+    fn load_reads_a_file_and_errors_name_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mine.toml");
+        let scene = Scene::builtin("inside").unwrap();
+        std::fs::write(&path, scene.to_toml()).unwrap();
+        assert_eq!(Scene::load(&path).unwrap(), scene);
+
+        std::fs::write(
+            &path,
+            scene.to_toml().replace("outer = 12.0", "outer = 2.0"),
+        )
+        .unwrap();
+        let message = Scene::load(&path).unwrap_err().to_string();
+        assert!(
+            message.contains("mine.toml") && message.contains("disk.outer"),
+            "{message}"
+        );
+
+        let message = Scene::load(folder.path()).unwrap_err().to_string();
+        assert!(
+            message.contains(&folder.path().display().to_string()),
+            "{message}"
+        );
+    }
+
+    #[test]
+    fn load_lists_the_builtin_names_where_nothing_is_found() {
+        let message = Scene::load("clasic").unwrap_err().to_string();
+        assert!(
+            message.contains("clasic") && message.contains("`darkness scene`"),
+            "{message}"
+        );
+        for builtin in builtins() {
+            assert!(message.contains(builtin.name()), "{message}");
+        }
+    }
+
+    #[test]
+    fn with_size_checks_the_size_and_keeps_the_rest() {
+        let scene = Scene::builtin("classic").unwrap();
+        let small = scene.with_size(64, 36).unwrap();
+        assert_eq!(
+            small.image(),
+            ImageSize {
+                width: 64,
+                height: 36
+            }
+        );
+        assert_eq!(
+            (small.camera(), small.disk()),
+            (scene.camera(), scene.disk())
+        );
+        assert!(matches!(
+            scene.with_size(0, 36),
+            Err(SceneError::ImageSide { .. })
+        ));
+        assert!(matches!(
+            scene.with_size(1_000_000, 1_000_000),
+            Err(SceneError::ImagePixels { .. })
+        ));
+    }
+}

@@ -7,7 +7,7 @@
 //! | chart | where | axes | stored | swept angle |
 //! |---|---|---|---|---|
 //! | critical | 0.64 ≤ 27e²/4 ≤ 3 | γ = √(u + 1/3), e | A(e), B(γ, e) | J = ±A ln((s + \|u̇\|)/√\|Δ\|) + (\|u̇\|/γ²) B, a difference or a sum of two J |
-//! | weak | 27e²/4 < 0.64, u < 2/3 | v = u/e, t = √(1 − e/e_c) | V(v, t) | to the periapsis: \|u̇\|/(e + u) V |
+//! | weak | 27e²/4 < 0.64, u < 2/3 | v = u/e, `t = √(1 − e/e_c)` | V(v, t) | to the periapsis: \|u̇\|/(e + u) V |
 //! | trapped | 27e²/4 < 0.64, u > 2/3 | u, t | Z(u, t) | to the apoapsis: \|u̇\| Z |
 //! | radial | 27e²/4 > 3 | u, 1/e² | H(u, 1/e²) | difference of two H, over e |
 //!

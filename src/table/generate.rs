@@ -35,7 +35,7 @@ pub fn generate(spec: &Spec, progress: &Progress<'_>) -> Option<Table<Memory>> {
     let total = rows(spec);
     let done = AtomicU64::new(0);
     let numbers = numbers(spec, &|| {
-        progress(done.fetch_add(1, Ordering::Relaxed) + 1, total)
+        progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
     });
     let Measured { error, angles } = measure(spec, &Lookup::new(spec, &numbers));
     let metadata = Metadata {

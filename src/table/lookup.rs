@@ -76,7 +76,7 @@ impl<'a> Lookup<'a> {
 
     /// The angles from both points to the turning point, where e² is small.
     #[inline]
-    fn to_turning_point(&self, orbit: &Orbit, from: Point, to: Point) -> (f64, f64) {
+    fn angles_to_turning_point(&self, orbit: &Orbit, from: Point, to: Point) -> (f64, f64) {
         let e = orbit.e2.sqrt();
         let t = (1.0 - e * CRITICAL_B).sqrt();
         if orbit.family == Family::Trapped {
@@ -122,7 +122,7 @@ impl SweptAngles for Lookup<'_> {
             return (self.radial.at(&rows, to.u) - self.radial.at(&rows, from.u)).abs() * b2.sqrt();
         }
         if orbit.e2 < LOWER_E2 {
-            let (first, second) = self.to_turning_point(orbit, from, to);
+            let (first, second) = self.angles_to_turning_point(orbit, from, to);
             return (first - second).abs();
         }
         let e = orbit.e2.sqrt();
@@ -145,7 +145,7 @@ impl SweptAngles for Lookup<'_> {
     #[inline]
     fn around(&self, orbit: &Orbit, from: Point, to: Point) -> f64 {
         if orbit.e2 < LOWER_E2 {
-            let (first, second) = self.to_turning_point(orbit, from, to);
+            let (first, second) = self.angles_to_turning_point(orbit, from, to);
             return first + second;
         }
         let e = orbit.e2.sqrt();

@@ -16,7 +16,7 @@ mod generate;
 mod lookup;
 mod measure;
 mod spec;
-mod spline;
+pub(crate) mod spline;
 
 pub use file::{TableError, default_path, open, save};
 pub use format::{FormatError, Metadata};

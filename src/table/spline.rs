@@ -61,7 +61,7 @@ impl Scale {
         Self {
             start: axis.start,
             per_unit: axis.scale(),
-            last_cell: axis.nodes as i32 - 2,
+            last_cell: axis.nodes.cast_signed() - 2,
         }
     }
 

@@ -1,0 +1,121 @@
+//! One point of an isoradial curve: the slope that carries a ray to a radius in a given angle.
+
+use super::Sight;
+use crate::orbit::invariants::{Family, Orbit, Point, three_u_minus_two};
+use crate::orbit::path::{Crossings, SweptAngles};
+
+/// From where, to which radius.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Target {
+    pub(super) u0: f64,
+    pub(super) slope_scale: f64,
+    /// κ of the critical ray.
+    pub(super) critical: f64,
+    /// Inverse radius to be met.
+    pub(super) u_disk: f64,
+}
+
+impl Target {
+    pub(super) fn new(sight: &Sight, critical: f64) -> Self {
+        Self {
+            u0: sight.u0,
+            slope_scale: sight.slope_scale,
+            critical,
+            u_disk: f64::NAN,
+        }
+    }
+
+    /// The orbit with `κ = κ_c + h`. `Δ = (w − w_c)(w + w_c)` from h itself: exact however close to critical.
+    fn orbit(&self, h: f64) -> Orbit {
+        let excess = self.slope_scale * h;
+        let critical = self.slope_scale * self.critical;
+        let w = critical + excess;
+        let delta = excess * (2.0 * critical + excess);
+        let family = if delta > 0.0 {
+            Family::Monotone
+        } else if three_u_minus_two(self.u0) < 0.0 {
+            Family::Scattered
+        } else {
+            Family::Trapped
+        };
+        let start = Point {
+            u: self.u0,
+            slope: w.abs(),
+        };
+        let e2 = w * w + self.u0 * self.u0 * (1.0 - self.u0);
+        Orbit {
+            start,
+            inward: w > 0.0,
+            e2,
+            delta,
+            family,
+        }
+    }
+
+    /// Positive where the ray of `h` is closer to the hole than the radius sought when it has swept `angle`; rises with h
+    /// (see the [module above](super)), through zero where it is just there. The size is the angle that is missing. Infinite where the ray never
+    /// meets the radius.
+    fn residual(&self, h: f64, angle: f64, angles: &impl SweptAngles) -> f64 {
+        let Crossings { inbound, outbound } = angles.crossings(&self.orbit(h), self.u_disk);
+        match (inbound, outbound) {
+            (Some(enter), Some(leave)) => (angle - enter).min(leave - angle),
+            (Some(enter), None) => angle - enter,
+            (None, Some(leave)) => leave - angle,
+            (None, None) if self.u0 < self.u_disk => f64::NEG_INFINITY,
+            (None, None) => f64::INFINITY,
+        }
+    }
+
+    /// The h with which a ray meets the radius at `angle`, found from a guess.
+    ///
+    /// Secant steps, kept within the bracket that the residuals' signs have shown so far; bisection, or doubling the step where one end is
+    /// not known yet, wherever the secant leaves it or the residual is infinite.
+    pub(super) fn solve(&self, angle: f64, guess: f64, angles: &impl SweptAngles) -> f64 {
+        const STEPS: usize = 200;
+        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+        let mut stride = 1e-4 * guess.abs().max(1e-3 * self.critical.abs()).max(1e-300);
+        if guess.abs() < 1e-3 * self.critical.abs() && guess != 0.0 {
+            stride = 1e-4 * guess.abs();
+        }
+        let mut previous: Option<(f64, f64)> = None;
+        let mut h = guess;
+        for step in 0..STEPS {
+            let residual = self.residual(h, angle, angles);
+            if residual == 0.0 {
+                return h;
+            }
+            if residual < 0.0 {
+                low = low.max(h);
+            } else {
+                high = high.min(h);
+            }
+            let secant = previous.and_then(|(h0, r0)| {
+                let next = h - residual * (h - h0) / (residual - r0);
+                // A last step that changes nothing is an answer, bracket or no bracket.
+                (next.is_finite() && ((next > low && next < high) || next == h)).then_some(next)
+            });
+            // Every eighth step halves the bracket, should the secant creep.
+            let next = match secant {
+                Some(next) if step % 8 != 7 => next,
+                _ if low.is_finite() && high.is_finite() => 0.5 * (low + high),
+                _ => {
+                    stride *= 4.0;
+                    if residual < 0.0 {
+                        h + stride
+                    } else {
+                        h - stride
+                    }
+                }
+            };
+            let change = (next - h).abs();
+            previous = residual.is_finite().then_some((h, residual));
+            h = next;
+            // The secant's error after a step is far below the step: 1e-9 of h leaves less than 1e-15.
+            let bracketed = high - low <= 4.0 * f64::EPSILON * h.abs();
+            if (secant == Some(next) && change <= 1e-9 * h.abs()) || bracketed {
+                return h;
+            }
+        }
+        h
+    }
+}

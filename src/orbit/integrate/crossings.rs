@@ -1,0 +1,194 @@
+//! Which watched radii a piece of a path passes, in order.
+
+use crate::orbit::{Event, EventKind, Fate, WatchedRadius};
+
+/// A piece of a path along which u only rises or only falls.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Piece {
+    /// u where it begins. What happened there was reported with the piece before.
+    pub(super) from: f64,
+    /// u where it ends.
+    pub(super) to: f64,
+    /// Whether u rises. Told apart from `from` and `to`, which may be equal or, at a turning point, rounded.
+    pub(super) inward: bool,
+    /// Whether the ray turns back at its end: a radius just touched there is not crossed.
+    pub(super) turns: bool,
+}
+
+/// The events of a flight so far, and the radii it may cross next.
+#[derive(Debug)]
+pub(super) struct Crossings {
+    /// By ascending u.
+    watched: Vec<WatchedRadius>,
+    events: Vec<Event>,
+    /// Nearest level of u (a watched radius, infinity or the horizon) at or below the present u.
+    below: f64,
+    /// Nearest level at or above the present u.
+    above: f64,
+}
+
+impl Crossings {
+    /// A flight that begins at `u`, watched at `watched` (by ascending u).
+    pub(super) fn new(watched: Vec<WatchedRadius>, u: f64) -> Self {
+        // Every radius is passed twice at most.
+        let events = Vec::with_capacity(2 * watched.len() + 1);
+        let mut crossings = Self {
+            watched,
+            events,
+            below: 0.0,
+            above: 1.0,
+        };
+        crossings.settle(u);
+        crossings
+    }
+
+    /// Whether nothing is met on the way from the present u straight to `u`: the question asked at every step.
+    #[inline]
+    pub(super) fn clear_until(&self, u: f64) -> bool {
+        // From a watched radius itself the answer is always no, since both bounds are that radius: the way back
+        // through it must not be missed.
+        self.below < u && u < self.above
+    }
+
+    /// Reports what is met along a piece, `angle_at(u)` being the swept angle at which the piece reaches u; it is
+    /// asked in the order the ray meets them. Returns whether the flight ends on it.
+    pub(super) fn pass(&mut self, piece: Piece, mut angle_at: impl FnMut(f64) -> f64) -> bool {
+        let Piece {
+            from,
+            to,
+            inward,
+            turns,
+        } = piece;
+        let index = |level: f64, inclusive: bool| {
+            self.watched
+                .partition_point(|watched| watched.u < level || (inclusive && watched.u == level))
+        };
+        // Inward (from, to], outward [to, from): each level belongs to one of two pieces that meet there.
+        let range = if inward {
+            index(from, true)..index(to, !turns)
+        } else {
+            index(to, turns)..index(from, false)
+        };
+        let passed = self.watched.get(range).unwrap_or_default();
+        let kind = if inward {
+            EventKind::Inbound
+        } else {
+            EventKind::Outbound
+        };
+        let mut report = |level: &WatchedRadius| {
+            self.events.push(Event {
+                kind,
+                radius: level.radius,
+                angle: angle_at(level.u),
+            });
+        };
+        if inward {
+            passed.iter().for_each(&mut report);
+        } else {
+            passed.iter().rev().for_each(&mut report);
+        }
+        let end = if inward && to >= 1.0 {
+            Some((Fate::Capture, 1.0, 1.0))
+        } else if !inward && to <= 0.0 {
+            Some((Fate::Escape, f64::INFINITY, 0.0))
+        } else {
+            None
+        };
+        if let Some((fate, radius, u)) = end {
+            self.events.push(Event {
+                kind: EventKind::End(fate),
+                radius,
+                angle: angle_at(u),
+            });
+            return true;
+        }
+        self.settle(to);
+        false
+    }
+
+    /// Finds the levels next to `u`.
+    fn settle(&mut self, u: f64) {
+        let at_or_below = self.watched.partition_point(|watched| watched.u <= u);
+        let below = self.watched.partition_point(|watched| watched.u < u);
+        self.below = at_or_below
+            .checked_sub(1)
+            .and_then(|i| self.watched.get(i))
+            .map_or(0.0, |level| level.u);
+        self.above = self.watched.get(below).map_or(1.0, |level| level.u);
+    }
+
+    /// All events reported.
+    pub(super) fn into_events(self) -> Vec<Event> {
+        self.events
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::orbit::inverse_radii;
+
+    fn radii_met(pieces: &[(f64, f64, bool)]) -> Vec<f64> {
+        let mut crossings = Crossings::new(inverse_radii(&[2.0, 4.0, 8.0]).unwrap(), pieces[0].0);
+        for &(from, to, turns) in pieces {
+            crossings.pass(
+                Piece {
+                    from,
+                    to,
+                    inward: to > from,
+                    turns,
+                },
+                |u| u,
+            );
+        }
+        crossings
+            .into_events()
+            .iter()
+            .map(|event| event.radius)
+            .collect()
+    }
+
+    #[test]
+    fn a_level_where_two_pieces_meet_is_crossed_once() {
+        assert_eq!(
+            radii_met(&[(0.1, 0.25, false), (0.25, 0.3, false)]),
+            [8.0, 4.0]
+        );
+        assert_eq!(
+            radii_met(&[(0.3, 0.25, false), (0.25, 0.1, false)]),
+            [4.0, 8.0]
+        );
+    }
+
+    #[test]
+    fn a_level_touched_at_a_turning_point_is_not_crossed() {
+        assert_eq!(
+            radii_met(&[(0.2, 0.25, true), (0.25, 0.2, false)]),
+            [] as [f64; 0]
+        );
+        assert_eq!(
+            radii_met(&[(0.2, 0.26, true), (0.26, 0.2, false)]),
+            [4.0, 4.0]
+        );
+    }
+
+    #[test]
+    fn nothing_is_clear_from_a_level_itself() {
+        let mut crossings = Crossings::new(inverse_radii(&[4.0]).unwrap(), 0.25);
+        assert!(!crossings.clear_until(0.3) && !crossings.clear_until(0.2));
+        crossings.pass(
+            Piece {
+                from: 0.25,
+                to: 0.3,
+                inward: true,
+                turns: false,
+            },
+            |u| u,
+        );
+        assert!(
+            crossings.clear_until(0.26)
+                && !crossings.clear_until(0.25)
+                && !crossings.clear_until(1.0)
+        );
+    }
+}

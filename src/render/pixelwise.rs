@@ -1,0 +1,68 @@
+//! A frame by following every pixel's ray by itself: the same picture from any method, without curves.
+
+use core::f64::consts::PI;
+
+use rayon::prelude::*;
+
+use super::mask::WHITE;
+use crate::orbit::{Event, EventKind, OrbitError, Orbits, Ray};
+use crate::scene::{Disk, Scene, View};
+
+/// The frame's pixels, row by row from the top, on all threads of the current rayon pool. `row_done` is called after each row.
+///
+/// # Errors
+/// What the method returns for the first row that has a ray it cannot follow.
+pub fn render(
+    scene: &Scene,
+    view: &View,
+    orbits: &impl Orbits,
+    row_done: &(dyn Fn() + Sync),
+) -> Result<Vec<u8>, OrbitError> {
+    let width = view.width() as usize;
+    let mut pixels = vec![0; width * view.height() as usize];
+    pixels
+        .par_chunks_exact_mut(width)
+        .enumerate()
+        .try_for_each(|(j, row)| {
+            for (i, pixel) in row.iter_mut().enumerate() {
+                let ray = view.pixel(i as u32, j as u32);
+                let s = ray.transverse();
+                // Straight at the hole or away from it: no plane, no disk.
+                if s > 0.0 {
+                    let first = view.plane_crossing(ray.ta, s);
+                    let start = Ray::new(view.u0(), view.dudphi(ray))?;
+                    let events = orbits.follow(start, &[scene.disk().inner, scene.disk().outer])?;
+                    if meets(&events, view.radius(), first, scene.disk()) {
+                        *pixel = WHITE;
+                    }
+                }
+            }
+            row_done();
+            Ok(())
+        })?;
+    Ok(pixels)
+}
+
+/// Whether a ray from `radius` with these events (crossings of the disk's two radii, and the end) is between the two radii
+/// at one of the angles `first + kπ`; at 0 the ray starts in the plane, which is no crossing.
+fn meets(events: &[Event], radius: f64, first: f64, disk: &Disk) -> bool {
+    let crosses_within = |from: f64, to: f64| {
+        let least = if first > 0.0 { 0.0 } else { 1.0 };
+        let k = ((from - first) / PI).ceil().max(least);
+        first + k * PI <= to
+    };
+    let mut entered = (disk.inner <= radius && radius <= disk.outer).then_some(0.0);
+    for event in events {
+        if let Some(from) = entered
+            && crosses_within(from, event.angle)
+        {
+            return true;
+        }
+        entered = match event.kind {
+            EventKind::Inbound if event.radius == disk.outer => Some(event.angle),
+            EventKind::Outbound if event.radius == disk.inner => Some(event.angle),
+            _ => None,
+        };
+    }
+    false
+}

@@ -1,0 +1,108 @@
+//! The scenes that come with the program.
+
+/// A scene that comes with the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Builtin {
+    name: &'static str,
+    toml: &'static str,
+}
+
+impl Builtin {
+    /// The name it is asked for by.
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// Its TOML form with comments, a file to start from.
+    pub fn toml(&self) -> &'static str {
+        self.toml
+    }
+
+    /// What it shows, in one line: the first comment line of its TOML form.
+    pub fn description(&self) -> &'static str {
+        self.toml
+            .lines()
+            .next()
+            .unwrap_or_default()
+            .trim_start_matches('#')
+            .trim()
+    }
+}
+
+/// All scenes that come with the program, the default one first.
+pub fn builtins() -> &'static [Builtin] {
+    &BUILTINS
+}
+
+static BUILTINS: [Builtin; 6] = [
+    Builtin {
+        name: "classic",
+        toml: include_str!("builtin/classic.toml"),
+    },
+    Builtin {
+        name: "face-on",
+        toml: include_str!("builtin/face-on.toml"),
+    },
+    Builtin {
+        name: "edge-on",
+        toml: include_str!("builtin/edge-on.toml"),
+    },
+    Builtin {
+        name: "close-up",
+        toml: include_str!("builtin/close-up.toml"),
+    },
+    Builtin {
+        name: "inside",
+        toml: include_str!("builtin/inside.toml"),
+    },
+    Builtin {
+        name: "photon-ring",
+        toml: include_str!("builtin/photon-ring.toml"),
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::super::{DEFAULT_SCENE, Scene, View};
+    use super::*;
+
+    #[test]
+    fn every_builtin_is_a_valid_scene_with_a_description() {
+        for builtin in builtins() {
+            let scene = Scene::from_toml(builtin.toml()).unwrap();
+            assert_eq!(Scene::builtin(builtin.name()), Some(scene));
+            assert_eq!(Scene::from_toml(&scene.to_toml()).unwrap(), scene);
+            assert!(builtin.toml().starts_with("# "), "{}", builtin.name());
+            assert!(
+                (20..100).contains(&builtin.description().chars().count()),
+                "{}",
+                builtin.description()
+            );
+        }
+        assert_eq!(builtins()[0].name(), DEFAULT_SCENE);
+    }
+
+    #[test]
+    fn the_scenes_are_what_their_names_say() {
+        let scene = |name| Scene::builtin(name).unwrap();
+        let radius = |name| scene(name).camera().position.length();
+        assert_eq!(View::new(&scene("edge-on")).n_p(), 0.0);
+        assert_eq!(View::new(&scene("face-on")).n_a(), 0.0);
+        assert!((radius("close-up") - 6.0).abs() < 0.1);
+        assert!(radius("inside") > 1.0 && radius("inside") < 1.5);
+    }
+
+    #[test]
+    fn the_photon_ring_scene_is_centred_on_the_shadows_edge() {
+        let view = View::new(&Scene::builtin("photon-ring").unwrap());
+        let centre = view.ray_at(0.0, 0.0);
+        // A static observer sees the critical rays at sin α = b_c √(1 − 1/r)/r, b_c = 3√3/2 (Synge 1966).
+        let edge = 1.5 * 3.0_f64.sqrt() * view.slope_scale();
+        let (sine, half_height) = (centre.transverse(), view.y_at(0.0));
+        assert!(
+            (sine - edge).abs() < half_height,
+            "{sine} {edge} {half_height}"
+        );
+        assert!(centre.ta > 0.0);
+    }
+}

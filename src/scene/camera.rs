@@ -1,0 +1,259 @@
+//! From pixels to rays in the frame of the hole.
+//!
+//! # Derivation
+//!
+//! The camera stands at P, `r = |P|`, `p̂ = P/r`, looks at F and is a static observer. With `V = F − P`, `L = |V|`:
+//! `f = V/L`, `right = f × up` normalised, `true_up = right × f`. The picture's point (X, Y) is seen in the direction
+//! `d = f + right X + true_up Y`. Of a direction only its inward part `z = −d·p̂` and its part across p̂, `t = d + z p̂`,
+//! are needed: the ray moves in the plane of p̂ and t, and starts with `du/dφ = u0 √(1 − u0) z/s`, `s = |t|`.
+//!
+//! t is given in a basis (â, b̂) of the plane across p̂ that the disk's unit normal n chooses: â along n's part across
+//! p̂, `b̂ = p̂ × â`. So `n·b̂ = 0` and `n·t = (n·â) t_a`; z, `t_a` and `t_b` are affine in (X, Y).
+//!
+//! # Precision
+//!
+//! A far camera looks at the hole through a field of view of 1e-12 rad, and t is as small. Subtracting `z p̂` from d
+//! would leave nothing of it. Instead the coefficients are formed so that nothing large is subtracted:
+//!
+//! * f's part across p̂ is that of F/L and also that of V/L, since F − V = P is along p̂. The shorter of F and V is
+//!   taken: the error is ε min(|F|, L)/L.
+//! * right and `true_up` are ⟂ V, so `right·P = right·F` and `right·p̂ = right·F/r`, small where F is near the hole.
+
+use glam::DVec3;
+
+use super::Scene;
+use super::vector::{cosine, direction, norm, scaled, unit_cross};
+
+/// Where `|n × p̂|` is no more than this, n and p̂ are parallel: what is left is the rounding of the cross product and
+/// of the norms, and would give â no direction. Taking `n·â` for 0 there changes an angle φ₁ by no more than this.
+const PARALLEL: f64 = 4.0 * f64::EPSILON;
+
+/// A quantity that is affine in a picture's coordinates: `at_centre + per_x X + per_y Y`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Affine {
+    /// The value at the picture's centre, X = Y = 0.
+    pub at_centre: f64,
+    /// The change with X.
+    pub per_x: f64,
+    /// The change with Y.
+    pub per_y: f64,
+}
+
+impl Affine {
+    /// The value at (x, y), summed in the order of the fields, x before y.
+    pub fn at(self, x: f64, y: f64) -> f64 {
+        self.at_centre + self.per_x * x + self.per_y * y
+    }
+}
+
+/// The direction a pixel looks in, in the frame of the hole; its length means nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PixelRay {
+    /// The inward part, `−d·p̂`: positive towards the hole's side.
+    pub z: f64,
+    /// The transverse part along â, the direction across p̂ in which the disk's normal leans.
+    pub ta: f64,
+    /// The transverse part along `b̂ = p̂ × â`, in the disk's plane.
+    pub tb: f64,
+}
+
+impl PixelRay {
+    /// `s = √(ta² + tb²)`, the transverse part's length; 0 for a ray straight at or away from the hole, which has no
+    /// orbital plane.
+    pub fn transverse(self) -> f64 {
+        (self.ta * self.ta + self.tb * self.tb).sqrt()
+    }
+}
+
+/// All that a frame needs of its scene's camera: the camera's radius, and each pixel's ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    radius: f64,
+    u0: f64,
+    slope_scale: f64,
+    n_p: f64,
+    n_a: f64,
+    z: Affine,
+    ta: Affine,
+    tb: Affine,
+    width: u32,
+    height: u32,
+    /// Half a pixel's side in X and Y, `tan(fov/2)/H`.
+    half_pixel: f64,
+}
+
+impl View {
+    /// The view of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        let (camera, disk, image) = (scene.camera(), scene.disk(), scene.image());
+        let radius = norm(camera.position);
+        let p = direction(camera.position);
+
+        // One power of two for V and F, so that neither squares out of range. A scene's V is not much shorter than F.
+        let (view, scale) = scaled(camera.focus - camera.position);
+        let focus = camera.focus / scale;
+        let distance = view.length();
+        let f = view / distance;
+        // Twice, so that both are ⟂ f to the last digit also where up is nearly parallel to f.
+        let true_up = direction(direction(view.cross(direction(camera.up))).cross(f));
+        let right = direction(f.cross(true_up));
+
+        let focus_is_near = norm(camera.focus) < radius;
+        let along_p = |v: DVec3| {
+            if focus_is_near {
+                v.dot(camera.focus) / radius
+            } else {
+                v.dot(p)
+            }
+        };
+        let (right_p, true_up_p) = (along_p(right), along_p(true_up));
+        let shorter = if focus.length() < distance {
+            focus
+        } else {
+            view
+        };
+
+        let n_p = cosine(disk.normal, camera.position);
+        let p_cross_n = unit_cross(camera.position, disk.normal);
+        let sine = p_cross_n.length();
+        let (n_a, a) = if sine > PARALLEL {
+            // The second cross product makes â ⟂ p̂ to the last digit, which p̂ × n, a difference, is not to it.
+            (sine, direction(p_cross_n.cross(p)))
+        } else if true_up_p.abs() <= right_p.abs() {
+            // Any direction across p̂ will do; of these two the one farther from p̂ has a part across of at least 1/√2.
+            (0.0, direction(true_up - p * true_up_p))
+        } else {
+            (0.0, direction(right - p * right_p))
+        };
+        let b = direction(p.cross(a));
+
+        let across = |e: DVec3| Affine {
+            at_centre: shorter.dot(e) / distance,
+            per_x: right.dot(e),
+            per_y: true_up.dot(e),
+        };
+        let u0 = 1.0 / radius;
+        Self {
+            radius,
+            u0,
+            // 1 − u0 = (r − 1)/r: r − 1 is exact for r < 2, where 1 − u0 would show the rounding of u0.
+            slope_scale: u0 * ((radius - 1.0) / radius).sqrt(),
+            n_p,
+            n_a,
+            z: Affine {
+                at_centre: -f.dot(p),
+                per_x: -right_p,
+                per_y: -true_up_p,
+            },
+            ta: across(a),
+            tb: across(b),
+            width: image.width,
+            height: image.height,
+            half_pixel: libm::tan(camera.fov_degrees.to_radians() / 2.0) / f64::from(image.height),
+        }
+    }
+
+    /// The camera's radius r, in Schwarzschild radii, above 1.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The camera's inverse radius `u0 = 1/r`, between 0 and 1.
+    pub fn u0(&self) -> f64 {
+        self.u0
+    }
+
+    /// `u0 √(1 − u0)`: the slope `du/dφ` of a ray is this times `z/s`.
+    pub fn slope_scale(&self) -> f64 {
+        self.slope_scale
+    }
+
+    /// `n·p̂`, the sine of the camera's height over the disk's plane; exactly 0 where `normal · position` is.
+    pub fn n_p(&self) -> f64 {
+        self.n_p
+    }
+
+    /// `n·â = |n × p̂| ≥ 0`; 0 on the disk's axis.
+    pub fn n_a(&self) -> f64 {
+        self.n_a
+    }
+
+    /// The inward part z as a function of (X, Y).
+    pub fn z(&self) -> Affine {
+        self.z
+    }
+
+    /// The transverse part along â as a function of (X, Y).
+    pub fn ta(&self) -> Affine {
+        self.ta
+    }
+
+    /// The transverse part along b̂ as a function of (X, Y).
+    pub fn tb(&self) -> Affine {
+        self.tb
+    }
+
+    /// The picture's width, in pixels.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// The picture's height, in pixels.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// X at `column` pixels from the picture's left edge, `(2 column − W) tan(fov/2)/H`; pixel i's centre is at
+    /// `i + ½`, its sides are at i and `i + 1`. `x_at(W − column)` is exactly `−x_at(column)`.
+    pub fn x_at(&self, column: f64) -> f64 {
+        (2.0 * column - f64::from(self.width)) * self.half_pixel
+    }
+
+    /// Y at `row` pixels from the picture's top edge, `(H − 2 row) tan(fov/2)/H`; pixel j's centre is at `j + ½`, its
+    /// sides are at j and `j + 1`. `y_at(H − row)` is exactly `−y_at(row)`.
+    pub fn y_at(&self, row: f64) -> f64 {
+        (f64::from(self.height) - 2.0 * row) * self.half_pixel
+    }
+
+    /// The ray seen at (X, Y) of the picture.
+    pub fn ray_at(&self, x: f64, y: f64) -> PixelRay {
+        PixelRay {
+            z: self.z.at(x, y),
+            ta: self.ta.at(x, y),
+            tb: self.tb.at(x, y),
+        }
+    }
+
+    /// The ray seen at the centre of pixel (i, j), i counted from the left, j from the top.
+    pub fn pixel(&self, i: u32, j: u32) -> PixelRay {
+        self.ray_at(self.x_at(f64::from(i) + 0.5), self.y_at(f64::from(j) + 0.5))
+    }
+
+    /// `du/dφ = u0 √(1 − u0) z/s` where the ray starts, positive inward; ±∞ for a ray straight at or away from the hole.
+    pub fn dudphi(&self, ray: PixelRay) -> f64 {
+        self.slope_scale * ray.z / ray.transverse()
+    }
+
+    /// The orbit angle φ₁ in [0, π) at which a ray with transverse part `ta` along â and length `s` first meets the
+    /// disk's plane, `tan φ₁ = −(n·p̂)/(n·t̂)`, `n·t̂ = n_a ta/s`. It meets the plane at `φ₁ + kπ`, `k = 0, 1, 2 …`.
+    ///
+    /// The camera itself is no crossing: only positive angles count. So where this is 0, the crossings are at `kπ`,
+    /// k ≥ 1. That is where `n·p̂ = 0`, also for the ray that stays in the disk's plane (`ta = 0`: the limit, like its
+    /// neighbours), and where φ₁ is π to the last digit. For s = 0 there is no orbital plane and the value means nothing.
+    pub fn plane_crossing(&self, ta: f64, s: f64) -> f64 {
+        if self.n_p == 0.0 {
+            return 0.0;
+        }
+        let n_t = self.n_a * ta;
+        // n and −n are the same plane; n·p̂ taken positive puts the angle between 0 and π.
+        let angle = libm::atan2(self.n_p.abs() * s, if self.n_p > 0.0 { -n_t } else { n_t });
+        if angle < std::f64::consts::PI {
+            angle
+        } else {
+            0.0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,149 @@
+//! Why a scene is refused.
+
+use std::path::PathBuf;
+
+use super::builtin::builtins;
+use super::validate::{FARTHEST_CAMERA, ISCO_RADIUS, MAX_IMAGE_SIDE, MAX_PIXELS};
+
+/// Why a scene is refused: what is wrong, what is allowed, and why.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    /// The text is no scene: no TOML, or a key is missing, unknown or of the wrong type.
+    #[error("{message}")]
+    Toml {
+        /// The parser's message with line and column.
+        message: String,
+    },
+    /// A number is infinite or not a number.
+    #[error("{key} holds {value:?}: every number of a scene must be finite")]
+    NotFinite {
+        /// The key, with its table.
+        key: &'static str,
+        /// The number.
+        value: f64,
+    },
+    /// A direction is the zero vector.
+    #[error(
+        "{key} is the zero vector, which points nowhere: give a direction, of any length but zero"
+    )]
+    ZeroDirection {
+        /// The key, with its table.
+        key: &'static str,
+    },
+    /// The camera stands at or inside the horizon.
+    #[error(
+        "camera.position is at radius {radius:?}, not outside the horizon: a camera can stand still only at a radius above 1 (the Schwarzschild radius)"
+    )]
+    InsideHorizon {
+        /// The camera's radius.
+        radius: f64,
+    },
+    /// The camera stands too far away.
+    #[error(
+        "camera.position is at radius {radius:?}: the farthest allowed is {FARTHEST_CAMERA:e}, since double precision knows a farther place only to a tenth of a Schwarzschild radius or worse"
+    )]
+    TooFar {
+        /// The camera's radius.
+        radius: f64,
+    },
+    /// The camera stands in the disk.
+    #[error(
+        "camera.position is in the disk's matter (in its plane, at radius {radius:?}, between disk.inner = {inner:?} and disk.outer = {outer:?}) and would see nothing else: move it off the plane or out of the disk"
+    )]
+    InMatter {
+        /// The camera's radius.
+        radius: f64,
+        /// The disk's inner edge.
+        inner: f64,
+        /// The disk's outer edge.
+        outer: f64,
+    },
+    /// The camera looks at the point where it stands.
+    #[error(
+        "camera.focus is camera.position, or cannot be told apart from it in double precision: the camera needs another point to look at"
+    )]
+    NoView,
+    /// The picture's upward direction is not defined.
+    #[error(
+        "camera.up is parallel to the view from camera.position to camera.focus, so it says nothing of which way is up in the picture: give another direction"
+    )]
+    UpAlongView,
+    /// The field of view is no angle that a flat picture can have.
+    #[error(
+        "camera.fov = {fov:?} is not allowed: a flat picture's vertical field of view is above 0 and below 180 degrees"
+    )]
+    Fov {
+        /// The field of view, in degrees.
+        fov: f64,
+    },
+    /// The disk reaches below the innermost stable circular orbit.
+    #[error(
+        "disk.inner = {inner:?} is below {ISCO_RADIUS:?}: no stable circular orbit exists inside 3 Schwarzschild radii (the ISCO), so no disk does"
+    )]
+    InnerBelowIsco {
+        /// The inner edge's radius.
+        inner: f64,
+    },
+    /// The disk has no width.
+    #[error(
+        "disk.outer = {outer:?} is not above disk.inner = {inner:?}: the disk lies between the two and needs a width"
+    )]
+    NoWidth {
+        /// The inner edge's radius.
+        inner: f64,
+        /// The outer edge's radius.
+        outer: f64,
+    },
+    /// A side of the picture is not allowed.
+    #[error(
+        "{key} = {value} is not allowed: a picture's side has 1 to {MAX_IMAGE_SIDE} pixels, so that it fits common image formats"
+    )]
+    ImageSide {
+        /// The key, with its table.
+        key: &'static str,
+        /// The number of pixels.
+        value: i64,
+    },
+    /// The picture has too many pixels.
+    #[error(
+        "image.width = {width} by image.height = {height} is {pixels} pixels: at most {MAX_PIXELS} are allowed, since the picture is held in memory",
+        pixels = i64::from(*width) * i64::from(*height)
+    )]
+    ImagePixels {
+        /// Pixels in a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
+    /// The scene asks for antialiasing.
+    #[error(
+        "image.antialias = true: antialiasing is not available in this version yet, set antialias = false or leave it out"
+    )]
+    Antialias,
+    /// Neither a built-in scene nor a file has that name.
+    #[error(
+        "{} is neither a built-in scene ({}) nor a file that exists: `darkness scene` describes the built-in ones, `darkness scene NAME` prints one to start from",
+        path.display(),
+        builtins().iter().map(super::Builtin::name).collect::<Vec<_>>().join(", ")
+    )]
+    Unknown {
+        /// What was asked for.
+        path: PathBuf,
+    },
+    /// A scene's file cannot be read.
+    #[error("scene file {} cannot be read: {error}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: std::io::Error,
+    },
+    /// A file holds no valid scene.
+    #[error("scene file {}: {error}", path.display())]
+    InFile {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong in it.
+        error: Box<SceneError>,
+    },
+}
