@@ -63,7 +63,7 @@ pub fn generate(spec: &Spec, progress: &Progress<'_>) -> Option<Table<Memory>> {
 /// All numbers of the table that `spec` describes, chart after chart; `row_done` is called once for each row of nodes
 /// (see [`rows`]).
 fn numbers(spec: &Spec, row_done: &(dyn Fn() + Sync)) -> Vec<f64> {
-    let axis = spec.amplitude_axis();
+    let axis = spec.critical_axes().orbit;
     let amplitudes: Vec<f64> = (0..axis.nodes)
         .map(|i| CriticalRow::new(axis.node(i)).amplitude())
         .collect();

@@ -1,6 +1,7 @@
 //! Swept angles read from a table.
 
 use super::charts::{CRITICAL_B, LOWER_E2, UPPER_E2};
+use super::logarithm::ln_ratio;
 use super::spec::{Axes, Spec};
 use super::spline::{Scale, Stencil, value, value_2d};
 use crate::orbit::invariants::{Family, Orbit, Point, three_u_minus_two};
@@ -12,17 +13,12 @@ use crate::orbit::path::SweptAngles;
 /// bicubic interpolations.
 #[derive(Debug, Clone, Copy)]
 pub struct Lookup<'a> {
-    amplitude: Curve<'a>,
+    /// A, on the critical chart's orbit axis.
+    amplitude: &'a [f64],
     critical: Chart<'a>,
     weak: Chart<'a>,
     trapped: Chart<'a>,
     radial: Chart<'a>,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Curve<'a> {
-    coefficients: &'a [f64],
-    axis: Scale,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -45,7 +41,7 @@ impl<'a> Chart<'a> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn at(&self, rows: &Stencil, place: f64) -> f64 {
         value_2d(
             self.coefficients,
@@ -59,14 +55,10 @@ impl<'a> Chart<'a> {
 impl<'a> Lookup<'a> {
     /// The charts within `numbers`, which are exactly as many as `spec` says.
     pub(crate) fn new(spec: &Spec, mut numbers: &'a [f64]) -> Self {
-        let axis = spec.amplitude_axis();
-        let (amplitude, rest) = numbers.split_at(axis.coefficients());
+        let (amplitude, rest) = numbers.split_at(spec.critical_axes().orbit.coefficients());
         numbers = rest;
         Self {
-            amplitude: Curve {
-                coefficients: amplitude,
-                axis: Scale::new(axis),
-            },
+            amplitude,
             critical: Chart::take(&mut numbers, spec.critical_axes()),
             weak: Chart::take(&mut numbers, spec.weak_axes()),
             trapped: Chart::take(&mut numbers, spec.trapped_axes()),
@@ -75,7 +67,7 @@ impl<'a> Lookup<'a> {
     }
 
     /// The angles from both points to the turning point, where e² is small.
-    #[inline]
+    #[inline(always)]
     fn angles_to_turning_point(&self, orbit: &Orbit, from: Point, to: Point) -> (f64, f64) {
         let e = orbit.e2.sqrt();
         let t = (1.0 - e * CRITICAL_B).sqrt();
@@ -92,11 +84,11 @@ impl<'a> Lookup<'a> {
         }
     }
 
-    /// The smooth part and the argument of the logarithm, `(|u̇|/γ²) B` and `s + |u̇|`, of `J` at both points.
-    #[inline]
-    fn critical_parts(&self, e: f64, from: Point, to: Point) -> [(f64, f64); 2] {
-        let rows = self.critical.orbit.stencil(e);
-        [from, to].map(|point| {
+    /// `A`, and at both points the smooth part of J, `(|u̇|/γ²) B`, and the argument of its logarithm, `s + |u̇|`.
+    #[inline(always)]
+    fn critical_parts(&self, orbit: &Orbit, from: Point, to: Point) -> (f64, [(f64, f64); 2]) {
+        let rows = self.critical.orbit.stencil(orbit.e2.sqrt());
+        let part = |point: Point| {
             let gamma2 = point.u + 1.0 / 3.0;
             let gamma = gamma2.sqrt();
             let s = three_u_minus_two(point.u).abs() * (1.0 / 3.0) * gamma;
@@ -104,12 +96,8 @@ impl<'a> Lookup<'a> {
                 point.slope / gamma2 * self.critical.at(&rows, gamma),
                 s + point.slope,
             )
-        })
-    }
-
-    #[inline]
-    fn amplitude(&self, e: f64) -> f64 {
-        value(self.amplitude.coefficients, &self.amplitude.axis.stencil(e))
+        };
+        (value(self.amplitude, &rows), [part(from), part(to)])
     }
 }
 
@@ -125,21 +113,19 @@ impl SweptAngles for Lookup<'_> {
             let (first, second) = self.angles_to_turning_point(orbit, from, to);
             return (first - second).abs();
         }
-        let e = orbit.e2.sqrt();
-        let [(smooth0, arg0), (smooth1, arg1)] = self.critical_parts(e, from, to);
+        let (amplitude, [(smooth0, arg0), (smooth1, arg1)]) = self.critical_parts(orbit, from, to);
+        let (inside0, inside1) = (
+            three_u_minus_two(from.u) > 0.0,
+            three_u_minus_two(to.u) > 0.0,
+        );
         // On one side of the photon sphere √|Δ| cancels between the logarithms; across it (Δ > 0) they add up.
-        let across = (three_u_minus_two(from.u) < 0.0) != (three_u_minus_two(to.u) < 0.0);
-        let ratio = if across {
-            arg0 * arg1 / orbit.delta
+        let logarithm = if inside0 == inside1 {
+            ln_ratio(arg1, arg0)
         } else {
-            arg1 / arg0
+            ln_ratio(arg0 * arg1, orbit.delta)
         };
-        let sign = if three_u_minus_two(to.u) < 0.0 {
-            -1.0
-        } else {
-            1.0
-        };
-        (sign * self.amplitude(e) * libm::log(ratio) + (smooth1 - smooth0)).abs()
+        let sign = if inside1 { 1.0 } else { -1.0 };
+        (sign * amplitude * logarithm + (smooth1 - smooth0)).abs()
     }
 
     #[inline]
@@ -148,9 +134,8 @@ impl SweptAngles for Lookup<'_> {
             let (first, second) = self.angles_to_turning_point(orbit, from, to);
             return first + second;
         }
-        let e = orbit.e2.sqrt();
-        let [(smooth0, arg0), (smooth1, arg1)] = self.critical_parts(e, from, to);
-        let logarithms = self.amplitude(e) * libm::log(arg0 * arg1 / -orbit.delta);
+        let (amplitude, [(smooth0, arg0), (smooth1, arg1)]) = self.critical_parts(orbit, from, to);
+        let logarithms = amplitude * ln_ratio(arg0 * arg1, -orbit.delta);
         let smooth = smooth0 + smooth1;
         if orbit.family == Family::Trapped {
             logarithms + smooth

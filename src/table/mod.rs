@@ -13,6 +13,7 @@ mod charts;
 mod file;
 pub mod format;
 mod generate;
+mod logarithm;
 mod lookup;
 mod measure;
 mod spec;

@@ -14,9 +14,7 @@ pub struct Spec {
     pub name: String,
     /// The largest error of a swept angle that the table promises, in radians, beyond what rounding of the ray's start does.
     pub tolerance: f64,
-    /// Nodes of `A(e)`, the logarithm's factor.
-    pub amplitude: u32,
-    /// Nodes of `B(γ, e)`: about the critical line.
+    /// Nodes of `B(γ, e)`, and along e of the logarithm's factor `A(e)`: about the critical line.
     pub critical: Nodes,
     /// Nodes of `V(u/e, t)`: rays that pass at a distance.
     pub weak: Nodes,
@@ -80,14 +78,6 @@ impl Spec {
         toml::from_str(text).ok()
     }
 
-    /// The axis of A.
-    pub(crate) fn amplitude_axis(&self) -> Axis {
-        Axis {
-            nodes: self.amplitude,
-            ..self.critical_axes().orbit
-        }
-    }
-
     pub(crate) fn critical_axes(&self) -> Axes {
         // u from 0 to 1.
         let gamma = ((1.0 / 3.0_f64).sqrt(), (4.0 / 3.0_f64).sqrt());
@@ -120,7 +110,7 @@ impl Spec {
 
     /// How many numbers the table holds: the charts' coefficients, one after the other.
     pub(crate) fn coefficients(&self) -> usize {
-        self.amplitude_axis().coefficients()
+        self.critical_axes().orbit.coefficients()
             + [
                 self.critical_axes(),
                 self.weak_axes(),
@@ -135,10 +125,9 @@ impl Spec {
     /// Whether every axis has as many nodes as a spline needs, and no more than a table may have.
     pub(crate) fn is_sound(&self) -> bool {
         let allowed = Axis::FEWEST..=Self::MOST;
-        allowed.contains(&self.amplitude)
-            && [self.critical, self.weak, self.trapped, self.radial]
-                .iter()
-                .all(|n| allowed.contains(&n.place) && allowed.contains(&n.orbit))
+        [self.critical, self.weak, self.trapped, self.radial]
+            .iter()
+            .all(|n| allowed.contains(&n.place) && allowed.contains(&n.orbit))
             && self.tolerance > 0.0
     }
 

@@ -67,11 +67,15 @@ impl Scale {
 
     /// The coefficients about `x` and the uniform cubic B-spline's weights. Beyond its ends the axis continues with its
     /// outermost cubic.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn stencil(self, x: f64) -> Stencil {
+        /// 1.5 · 2⁵²: a sum with it is rounded to an integer, which stands in its lowest bits.
+        const ROUNDER: f64 = 6_755_399_441_055_744.0;
         let t = (x - self.start) * self.per_unit;
-        // A cast saturates, NaN included: any index stays within the axis.
-        let cell = (t as i32).clamp(0, self.last_cell);
+        // Rounding t − ½ gives the cell; a node belongs to the one or the other of its cells, whose cubics agree there. Whatever the
+        // bits hold for a t that is no number of a cell, the index stays within the axis.
+        let bits = (t - 0.5 + ROUNDER).to_bits();
+        let cell = (bits as i32).max(0).min(self.last_cell);
         let f = t - f64::from(cell);
         let g = 1.0 - f;
         let (f2, g2) = (f * f, g * g);
@@ -87,16 +91,23 @@ impl Scale {
     }
 }
 
+/// The four coefficients from `first` on.
+#[inline(always)]
+fn four(coefficients: &[f64], first: usize) -> [f64; 4] {
+    let c = &coefficients[first..first + 4];
+    [c[0], c[1], c[2], c[3]]
+}
+
 /// The value at `stencil` of a spline of one variable.
-#[inline]
+#[inline(always)]
 pub(crate) fn value(coefficients: &[f64], stencil: &Stencil) -> f64 {
-    let c = &coefficients[stencil.first..stencil.first + 4];
-    let w = &stencil.weights;
+    let c = four(coefficients, stencil.first);
+    let w = stencil.weights;
     (w[0] * c[0] + w[1] * c[1]) + (w[2] * c[2] + w[3] * c[3])
 }
 
 /// The value of a spline of two variables, stored row by row: `rows` along the slow axis, `columns` along the fast one.
-#[inline]
+#[inline(always)]
 pub(crate) fn value_2d(
     coefficients: &[f64],
     width: usize,
@@ -104,15 +115,17 @@ pub(crate) fn value_2d(
     columns: &Stencil,
 ) -> f64 {
     let first = rows.first * width + columns.first;
-    let mut sums = [0.0; 4];
-    for (k, &weight) in rows.weights.iter().enumerate() {
-        let row = &coefficients[first + k * width..first + k * width + 4];
-        for (sum, &c) in sums.iter_mut().zip(row) {
-            *sum += weight * c;
-        }
-    }
-    let w = &columns.weights;
-    (w[0] * sums[0] + w[1] * sums[1]) + (w[2] * sums[2] + w[3] * sums[3])
+    let c = &coefficients[first..first + 3 * width + 4];
+    let (a, b, c, d) = (
+        four(c, 0),
+        four(c, width),
+        four(c, 2 * width),
+        four(c, 3 * width),
+    );
+    let r = rows.weights;
+    let sum = |k: usize| (r[0] * a[k] + r[1] * b[k]) + (r[2] * c[k] + r[3] * d[k]);
+    let w = columns.weights;
+    (w[0] * sum(0) + w[1] * sum(1)) + (w[2] * sum(2) + w[3] * sum(3))
 }
 
 /// The B-spline coefficients of the spline through `values`, one per node; `values.len() + 2` of them.
