@@ -113,14 +113,11 @@ impl Orbit {
     }
 }
 
-/// `3u − 2`, rounded once: for u ≥ ½ both summands of `(2u − 1) + (u − 1)` are exact. Never zero, since 2/3 is no
-/// floating-point number.
+/// `3u − 2`, for u ≥ ½ rounded once: there both summands of `(2u − 1) + (u − 1)` are exact. (Below, where nothing cancels, they are rounded
+/// to half an ε each.) Never zero, since 2/3 is no floating-point number.
+#[inline]
 pub(crate) fn three_u_minus_two(u: f64) -> f64 {
-    if u >= 0.5 {
-        (2.0 * u - 1.0) + (u - 1.0)
-    } else {
-        3.0 * u - 2.0
-    }
+    (2.0 * u - 1.0) + (u - 1.0)
 }
 
 /// `s = |u − 2/3| √(u + 1/3)`: the slope `|du/dφ|` of the critical ray at u, since `s² = 4/27 − u²(1 − u)`.

@@ -3,9 +3,10 @@
 use super::charts::{CRITICAL_B, LOWER_E2, UPPER_E2};
 use super::logarithm::ln_ratio;
 use super::spec::{Axes, Spec};
-use super::spline::{Scale, Stencil, value, value_2d};
+use super::spline::{Scale, Stencil, value, values_2d};
 use crate::orbit::invariants::{Family, Orbit, Point, three_u_minus_two};
 use crate::orbit::path::SweptAngles;
+use wide::f64x2;
 
 /// A table's numbers, ready for lookups: a method like any other (see [`crate::orbit`]).
 ///
@@ -41,13 +42,14 @@ impl<'a> Chart<'a> {
         }
     }
 
+    /// The values at two places of one orbit.
     #[inline(always)]
-    fn at(&self, rows: &Stencil, place: f64) -> f64 {
-        value_2d(
+    fn at(&self, rows: &Stencil, places: f64x2) -> f64x2 {
+        values_2d(
             self.coefficients,
             self.width,
             rows,
-            &self.place.stencil(place),
+            &self.place.stencils(places),
         )
     }
 }
@@ -68,36 +70,49 @@ impl<'a> Lookup<'a> {
 
     /// The angles from both points to the turning point, where e² is small.
     #[inline(always)]
-    fn angles_to_turning_point(&self, orbit: &Orbit, from: Point, to: Point) -> (f64, f64) {
+    fn angles_to_turning_point(&self, orbit: &Orbit, points: Pair) -> [f64; 2] {
+        let Pair { u, slope } = points;
         let e = orbit.e2.sqrt();
         let t = (1.0 - e * CRITICAL_B).sqrt();
-        if orbit.family == Family::Trapped {
-            let rows = self.trapped.orbit.stencil(t);
-            let angle = |point: Point| point.slope * self.trapped.at(&rows, point.u);
-            (angle(from), angle(to))
+        let angles = if orbit.family == Family::Trapped {
+            slope * self.trapped.at(&self.trapped.orbit.stencil(t), u)
         } else {
-            let rows = self.weak.orbit.stencil(t);
-            let b = 1.0 / e;
-            let angle =
-                |point: Point| point.slope / (e + point.u) * self.weak.at(&rows, point.u * b);
-            (angle(from), angle(to))
-        }
+            slope / (u + e) * self.weak.at(&self.weak.orbit.stencil(t), u * (1.0 / e))
+        };
+        angles.to_array()
     }
 
     /// `A`, and at both points the smooth part of J, `(|u̇|/γ²) B`, and the argument of its logarithm, `s + |u̇|`.
     #[inline(always)]
-    fn critical_parts(&self, orbit: &Orbit, from: Point, to: Point) -> (f64, [(f64, f64); 2]) {
+    fn critical_parts(&self, orbit: &Orbit, points: Pair) -> (f64, [f64; 2], [f64; 2]) {
+        let Pair { u, slope } = points;
         let rows = self.critical.orbit.stencil(orbit.e2.sqrt());
-        let part = |point: Point| {
-            let gamma2 = point.u + 1.0 / 3.0;
-            let gamma = gamma2.sqrt();
-            let s = three_u_minus_two(point.u).abs() * (1.0 / 3.0) * gamma;
-            (
-                point.slope / gamma2 * self.critical.at(&rows, gamma),
-                s + point.slope,
-            )
-        };
-        (value(self.amplitude, &rows), [part(from), part(to)])
+        let gamma2 = u + 1.0 / 3.0;
+        let gamma = gamma2.sqrt();
+        let smooth = slope / gamma2 * self.critical.at(&rows, gamma);
+        let s = ((u + u - 1.0) + (u - 1.0)).abs() * (gamma * (1.0 / 3.0));
+        (
+            value(self.amplitude, &rows),
+            smooth.to_array(),
+            (s + slope).to_array(),
+        )
+    }
+}
+
+/// Two points of an orbit, side by side.
+#[derive(Debug, Clone, Copy)]
+struct Pair {
+    u: f64x2,
+    slope: f64x2,
+}
+
+impl Pair {
+    #[inline(always)]
+    fn new(from: Point, to: Point) -> Self {
+        Self {
+            u: f64x2::new([from.u, to.u]),
+            slope: f64x2::new([from.slope, to.slope]),
+        }
     }
 }
 
@@ -107,36 +122,37 @@ impl SweptAngles for Lookup<'_> {
         if orbit.e2 > UPPER_E2 {
             let b2 = 1.0 / orbit.e2;
             let rows = self.radial.orbit.stencil(b2);
-            return (self.radial.at(&rows, to.u) - self.radial.at(&rows, from.u)).abs() * b2.sqrt();
+            let [first, second] = self.radial.at(&rows, Pair::new(from, to).u).to_array();
+            return (second - first).abs() * b2.sqrt();
         }
         if orbit.e2 < LOWER_E2 {
-            let (first, second) = self.angles_to_turning_point(orbit, from, to);
+            let [first, second] = self.angles_to_turning_point(orbit, Pair::new(from, to));
             return (first - second).abs();
         }
-        let (amplitude, [(smooth0, arg0), (smooth1, arg1)]) = self.critical_parts(orbit, from, to);
+        let (amplitude, smooth, arguments) = self.critical_parts(orbit, Pair::new(from, to));
         let (inside0, inside1) = (
             three_u_minus_two(from.u) > 0.0,
             three_u_minus_two(to.u) > 0.0,
         );
         // On one side of the photon sphere √|Δ| cancels between the logarithms; across it (Δ > 0) they add up.
         let logarithm = if inside0 == inside1 {
-            ln_ratio(arg1, arg0)
+            ln_ratio(arguments[1], arguments[0])
         } else {
-            ln_ratio(arg0 * arg1, orbit.delta)
+            ln_ratio(arguments[0] * arguments[1], orbit.delta)
         };
         let sign = if inside1 { 1.0 } else { -1.0 };
-        (sign * amplitude * logarithm + (smooth1 - smooth0)).abs()
+        (sign * amplitude * logarithm + (smooth[1] - smooth[0])).abs()
     }
 
     #[inline]
     fn around(&self, orbit: &Orbit, from: Point, to: Point) -> f64 {
         if orbit.e2 < LOWER_E2 {
-            let (first, second) = self.angles_to_turning_point(orbit, from, to);
+            let [first, second] = self.angles_to_turning_point(orbit, Pair::new(from, to));
             return first + second;
         }
-        let (amplitude, [(smooth0, arg0), (smooth1, arg1)]) = self.critical_parts(orbit, from, to);
-        let logarithms = amplitude * ln_ratio(arg0 * arg1, -orbit.delta);
-        let smooth = smooth0 + smooth1;
+        let (amplitude, smooth, arguments) = self.critical_parts(orbit, Pair::new(from, to));
+        let logarithms = amplitude * ln_ratio(arguments[0] * arguments[1], -orbit.delta);
+        let smooth = smooth[0] + smooth[1];
         if orbit.family == Family::Trapped {
             logarithms + smooth
         } else {
