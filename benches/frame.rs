@@ -9,14 +9,14 @@ use darkness::isoradial::Isoradials;
 use darkness::orbit::Ray;
 use darkness::orbit::exact::Exact;
 use darkness::orbit::integrate::{FixedStep, Scheme};
-use darkness::render::mask::{WHITE, render, sight};
+use darkness::render::mask::{WHITE, render, render_every_pixel, sight};
 use darkness::render::pixelwise;
 use darkness::scene::{Scene, View, builtins};
 use darkness::table::{Spec, generate};
 use interleaved::{Contender, compare};
 
 fn white(pixels: &[u8]) -> f64 {
-    pixels.iter().filter(|&&pixel| pixel == WHITE).count() as f64
+    pixels.iter().map(|&pixel| f64::from(pixel)).sum()
 }
 
 /// The baseline's frame.
@@ -54,13 +54,18 @@ fn main() {
             let pixels = view.width() as usize * view.height() as usize;
             let curves = Isoradials::new(&sight(&scene, &view), &lookup);
             println!(
-                "{}: {} orders, {} bytes of curves, wrong pixels of RK4: {}",
+                "{}: {} orders, {} bytes of curves, wrong pixels of RK4: {}, of the tiles: {}",
                 builtin.name(),
                 curves.orders(),
                 curves.bytes(),
-                render(&view, &curves)
+                render_every_pixel(&view, &curves)
                     .iter()
                     .zip(rk4_frame(&scene, &view))
+                    .filter(|(a, b)| *a != b)
+                    .count(),
+                render_every_pixel(&view, &curves)
+                    .iter()
+                    .zip(render(&view, &curves))
                     .filter(|(a, b)| *a != b)
                     .count(),
             );
@@ -86,6 +91,10 @@ fn main() {
                     Contender {
                         name: "the frame, curves given",
                         run: Box::new(|| white(&render(&view, &curves))),
+                    },
+                    Contender {
+                        name: "every pixel by itself, curves given",
+                        run: Box::new(|| white(&render_every_pixel(&view, &curves))),
                     },
                     Contender {
                         name: "the curves alone",

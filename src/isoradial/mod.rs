@@ -20,6 +20,7 @@
 //! piece h has a pole at φ = 0; there `x h` is kept.
 
 mod nodes;
+mod range;
 mod solve;
 
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -28,6 +29,7 @@ use crate::orbit::invariants::{critical_slope, three_u_minus_two};
 use crate::orbit::path::SweptAngles;
 use crate::table::spline::{Scale, Stencil, value};
 use nodes::Nodes;
+pub use range::{Bundle, Verdict};
 use solve::Target;
 
 /// What the curves are drawn for: one camera radius, one disk, one size of pixel.

@@ -134,6 +134,22 @@ pub(crate) fn value(coefficients: &[f64], stencil: &Stencil) -> f64 {
     (w[0] * c[0] + w[1] * c[1]) + (w[2] * c[2] + w[3] * c[3])
 }
 
+/// Bounds of a spline of one variable between two places, t cells apart: its values there, and `max|s″| t²/8` beyond them
+/// (the error of the chord). s″ is piecewise linear between the coefficients' second differences.
+pub(crate) fn bounds(coefficients: &[f64], axis: Scale, x: (f64, f64)) -> (f64, f64) {
+    let (first, last) = (axis.stencil(x.0), axis.stencil(x.1));
+    let ends = (value(coefficients, &first), value(coefficients, &last));
+    let within = &coefficients[first.first..last.first + 4];
+    let bend = within.windows(3).fold(0.0, |bend: f64, c| {
+        bend.max((c[0] - 2.0 * c[1] + c[2]).abs())
+    });
+    let t = (x.1 - x.0) * axis.per_unit;
+    // Each value has some roundings of terms as large as the coefficients, whose weights' sum is 6.
+    let size = within.iter().fold(0.0, |size: f64, c| size.max(c.abs()));
+    let margin = 6.0 * (bend * t * t / 8.0 + 16.0 * f64::EPSILON * size);
+    (ends.0.min(ends.1) - margin, ends.0.max(ends.1) + margin)
+}
+
 /// The values at two places of a spline of two variables, stored row by row: `rows` along the slow axis, `columns` along the fast one.
 #[inline(always)]
 pub(crate) fn values_2d(
