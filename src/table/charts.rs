@@ -20,10 +20,13 @@
 //! of either**. (For Δ < 0 read `± acosh(|σ|/√−Δ)`; both are `± ln((s + |u̇|)/√|Δ|)`.) B/γ² has its nearest singularity at the
 //! root u1 ≈ −1/3, a pole in γ near γ = 0; the factor γ² takes the most of it out. As functions of e both are singular at e = 0 only.
 //!
-//! B itself comes from a power series. With the cubic's lone root u1, `c = (p − u1)`, p the mean of the other two roots, `y = (u − p)/c`,
+//! B itself comes from a power series. With the cubic's lone root u1, p the mean of the other two, `c = p − u1`, `y = (u − p)/c`,
 //! `m = (1 − c⁻²)/3`: `√c ∫ du/√P = ∫ dy/(√(1 + y) √(y² + m)) = A₁ asinh(y/√m) + √(y² + m) Σ bₙ yⁿ`. Differentiated, with
-//! `aₙ = binom(−½, n)`: `n b₍ₙ₋₁₎ + m (n + 1) b₍ₙ₊₁₎ = aₙ`, `A₁ = 1 − m b₁`: solved downwards, where it is stable. The two logarithms differ
-//! by `asinh(|u̇| ν)`, ν analytic (see [`log_difference`]).
+//! `aₙ = binom(−½, n)`: `n bₙ₋₁ + m (n + 1) bₙ₊₁ = aₙ` and `A₁ = 1 − m b₁`; solved downwards from n = 140, where the recurrence is stable. So
+//! `A = A₁/√c`, and with the difference of the two logarithms, `asinh(|u̇| ν)`,
+//! `B = γ² (Σ bₙ yⁿ / (c √(c (u − u1))) + A asinh(|u̇| ν)/|u̇|)`, where, with `x = u − 2/3`, `d = c − 1`,
+//! `ν = 9 (2x/(3(√(u − u1) + γ)) − √(u − u1)/3) / (√(u − u1) (3 + 2d) √(2(2 + d)))`: no term of it is small or large anywhere near the
+//! critical line, where the orbit's own logarithm is infinite.
 //!
 //! *Weak* and *trapped*: the angle to the turning point is odd in u̇ and analytic in u̇², so over u̇ it is analytic in u, beyond the turning
 //! point too; its next singularity is the other turning point, for small e the mirrored one at v = −1, where a factor 1 + v makes a root of a

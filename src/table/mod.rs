@@ -1,15 +1,14 @@
 //! The table: every ray's swept angles, solved once over a dense grid and read from a mapped file ever after.
 //!
 //! No disk and no camera is in it: it answers the same question as every other method (see [`crate::orbit`]), for all rays outside
-//! the horizon. How: [`charts`] (what is stored, and why it is smooth), [`spline`](self) (how it is interpolated), [`format`]
-//! (the file), [`generate`] (how it is made).
+//! the horizon. [`charts`] says what is stored and why that is smooth, [`mod@format`] draws the file; between the nodes run cubic splines.
 
 #[cfg(target_endian = "big")]
 compile_error!(
     "a table's numbers are read in place as little-endian f64: darkness needs a little-endian machine"
 );
 
-mod charts;
+pub mod charts;
 mod file;
 pub mod format;
 mod generate;
@@ -47,7 +46,7 @@ impl AsRef<[u8]> for Memory {
 }
 
 impl<B: AsRef<[u8]>> Table<B> {
-    /// A table from its bytes, every one of which is checked: see [`format`].
+    /// A table from its bytes, every one of which is checked: see [`mod@format`].
     ///
     /// # Errors
     /// [`FormatError`]: what is wrong with the bytes.

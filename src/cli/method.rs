@@ -1,0 +1,246 @@
+//! The method that answers what happens to a ray, and the table it may need.
+
+use std::fmt;
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use memmap2::Mmap;
+
+use super::Misuse;
+use super::progress::{Report, warn};
+use crate::orbit::integrate::Adaptive;
+use crate::table::{self, Lookup, Memory, Metadata, Spec, Table, TableError};
+
+/// The table that is made where it is missing.
+pub(super) const DEFAULT_TABLE: &str = "standard";
+
+/// Names the table where `--table` does not.
+const TABLE_VARIABLE: &str = "DARKNESS_TABLE";
+
+const TABLE_HELP: &str = "The table to read with --method table [env: DARKNESS_TABLE] \
+    [default: tables/standard.table, made where it is missing]";
+
+/// What [`Adaptive`] can be asked for: above, it takes the upper bound; at the lower one steps are long since as short as helps.
+const TOLERANCES: RangeInclusive<f64> = 1e-13..=1e-3;
+
+/// The options of every verb that follows rays.
+#[derive(Debug, Args)]
+pub(super) struct MethodArgs {
+    /// How rays are followed
+    #[arg(long, value_name = "METHOD", value_enum, default_value_t = MethodName::Table)]
+    method: MethodName,
+    #[arg(long, value_name = "FILE", help = TABLE_HELP)]
+    table: Option<PathBuf>,
+    /// The error allowed in an angle by --method integrate, in radians, 1e-13 to 1e-3 [default: 1e-9]
+    #[arg(long, value_name = "T", value_parser = tolerance)]
+    integrate_tolerance: Option<f64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum MethodName {
+    /// Read from a table, solved beforehand
+    Table,
+    /// Elliptic integrals, ray by ray
+    Exact,
+    /// The equation itself, integrated ray by ray
+    Integrate,
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(tolerance) if TOLERANCES.contains(&tolerance) => Ok(tolerance),
+        _ => Err("a tolerance is a number from 1e-13 to 1e-3 (radians)".into()),
+    }
+}
+
+/// A method whose options are checked; what it needs is there, or is known to be makable.
+#[derive(Debug)]
+pub(super) enum Checked {
+    /// Ready.
+    Ready(Method),
+    /// The default table is yet to be made.
+    TableMissing(PathBuf),
+}
+
+/// A method, ready to follow rays.
+#[derive(Debug)]
+pub(super) enum Method {
+    Table(AnyTable),
+    Exact,
+    Integrate(Adaptive),
+}
+
+/// A table, from a file or just made.
+#[derive(Debug)]
+pub(super) enum AnyTable {
+    Mapped(Table<Mmap>),
+    Made(Table<Memory>),
+}
+
+impl AnyTable {
+    /// The table, ready for lookups.
+    pub(super) fn lookup(&self) -> Lookup<'_> {
+        match self {
+            Self::Mapped(table) => table.lookup(),
+            Self::Made(table) => table.lookup(),
+        }
+    }
+
+    fn metadata(&self) -> &Metadata {
+        match self {
+            Self::Mapped(table) => table.metadata(),
+            Self::Made(table) => table.metadata(),
+        }
+    }
+}
+
+impl MethodArgs {
+    /// Checks the options, and the table's file to its last byte.
+    ///
+    /// # Errors
+    /// A misuse, or a table that cannot be read. A damaged table is never replaced unasked, nor is one made where the user names a file: only
+    /// the default one is.
+    pub(super) fn check(&self) -> anyhow::Result<Checked> {
+        if self.integrate_tolerance.is_some() && self.method != MethodName::Integrate {
+            return Err(Misuse::ToleranceUnused.into());
+        }
+        let method = match self.method {
+            MethodName::Exact => Method::Exact,
+            MethodName::Integrate => Method::Integrate(
+                self.integrate_tolerance
+                    .map_or_else(Adaptive::default, Adaptive::new),
+            ),
+            MethodName::Table => {
+                let place = self.place();
+                match table::open(&place.path) {
+                    Ok(table) => Method::Table(AnyTable::Mapped(table)),
+                    Err(TableError::Missing { path }) if place.origin == Origin::Default => {
+                        return Ok(Checked::TableMissing(path));
+                    }
+                    Err(error) if place.origin == Origin::Variable => {
+                        anyhow::bail!(
+                            "{error} (the environment's {TABLE_VARIABLE} names this file)"
+                        )
+                    }
+                    Err(error) => return Err(error.into()),
+                }
+            }
+        };
+        Ok(Checked::Ready(method))
+    }
+
+    /// The table's file, where the method reads one.
+    pub(super) fn table_path(&self) -> Option<PathBuf> {
+        (self.method == MethodName::Table).then(|| self.place().path)
+    }
+
+    /// Flag, environment, default. An empty variable counts as none, as everywhere.
+    fn place(&self) -> Place {
+        let variable = || std::env::var_os(TABLE_VARIABLE).filter(|name| !name.is_empty());
+        if let Some(path) = &self.table {
+            Place {
+                path: path.clone(),
+                origin: Origin::Flag,
+            }
+        } else if let Some(path) = variable() {
+            Place {
+                path: path.into(),
+                origin: Origin::Variable,
+            }
+        } else {
+            Place {
+                path: table::default_path(DEFAULT_TABLE),
+                origin: Origin::Default,
+            }
+        }
+    }
+}
+
+/// A table's file, and who named it.
+struct Place {
+    path: PathBuf,
+    origin: Origin,
+}
+
+#[derive(Debug, PartialEq, Eq)]
+enum Origin {
+    Flag,
+    Variable,
+    Default,
+}
+
+impl Checked {
+    /// The method, after its table is made where it is missing.
+    ///
+    /// # Errors
+    /// A table that cannot be made.
+    pub(super) fn ready(self, report: Report) -> anyhow::Result<Method> {
+        let path = match self {
+            Self::Ready(method) => return Ok(method),
+            Self::TableMissing(path) => path,
+        };
+        report.note(format_args!(
+            "{} is not there yet: making it, this once",
+            path.display()
+        ));
+        let table = make(&spec(DEFAULT_TABLE)?, report)?;
+        if let Err(error) = table::save(&table, &path) {
+            let reason = match error {
+                TableError::Unwritable { source, .. } => source.to_string(),
+                other => other.to_string(),
+            };
+            warn(format_args!(
+                "{}: the table cannot be kept ({reason}); this run goes on with it in memory, the next will have to make it again",
+                path.display()
+            ));
+        }
+        Ok(Method::Table(AnyTable::Made(table)))
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Table(table) => {
+                let metadata = table.metadata();
+                let error = metadata.measured_error;
+                write!(f, "table {} (error {error:.1e})", metadata.spec.name)
+            }
+            Self::Exact => write!(f, "exact"),
+            Self::Integrate(method) => write!(f, "integrate (tolerance {:e})", method.tolerance),
+        }
+    }
+}
+
+/// The specification called `name`.
+///
+/// # Errors
+/// A name that is none of [`Spec::NAMES`].
+pub(super) fn spec(name: &str) -> anyhow::Result<Spec> {
+    Spec::named(name).ok_or_else(|| {
+        anyhow::anyhow!(
+            "there is no specification of a table called {name}, only {}",
+            Spec::NAMES.join(", ")
+        )
+    })
+}
+
+/// Makes a table, with a bar.
+///
+/// # Errors
+/// A grid that no table can have.
+pub(super) fn make(spec: &Spec, report: Report) -> anyhow::Result<Table<Memory>> {
+    let bar = report.bar(0, "making the table");
+    let made = table::generate(spec, &|_, total| {
+        bar.set_length(total);
+        // Threads finish rows in any order; counted here, the bar never runs backwards.
+        bar.inc(1);
+    });
+    made.ok_or_else(|| {
+        anyhow::anyhow!(
+            "the table {} asks for a grid that no table can have",
+            spec.name
+        )
+    })
+}

@@ -1,0 +1,106 @@
+//! Where a picture goes.
+
+use std::ffi::OsString;
+use std::fmt;
+use std::io::{self, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+
+use super::{Misuse, StdoutError, target};
+use crate::render::png;
+use crate::scene::ImageSize;
+
+/// Where a picture goes, checked.
+#[derive(Debug)]
+pub(super) enum Destination {
+    Stdout,
+    File(PathBuf),
+}
+
+impl Destination {
+    /// The place that `-o` names, or else the scene's name with .png in the current folder.
+    ///
+    /// # Errors
+    /// What stands in the way of a picture there.
+    pub(super) fn new(output: Option<&Path>, scene: &Path) -> anyhow::Result<Self> {
+        let path = match output {
+            Some(path) if path == Path::new("-") => {
+                return if io::stdout().is_terminal() {
+                    Err(Misuse::PictureToTerminal.into())
+                } else {
+                    Ok(Self::Stdout)
+                };
+            }
+            Some(path) => path.to_owned(),
+            None => default_name(scene),
+        };
+        let is_png = path
+            .extension()
+            .is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
+        if !is_png {
+            return Err(Misuse::Ending { path }.into());
+        }
+        if target::same_file(&path, scene) {
+            return Err(Misuse::OntoInput {
+                path,
+                what: "scene",
+            }
+            .into());
+        }
+        target::check(&path)?;
+        Ok(Self::File(path))
+    }
+
+    /// Checks that the picture does not go over `table`.
+    ///
+    /// # Errors
+    /// [`Misuse::OntoInput`]
+    pub(super) fn spares(&self, table: &Path) -> Result<(), Misuse> {
+        match self {
+            Self::File(path) if target::same_file(path, table) => Err(Misuse::OntoInput {
+                path: path.clone(),
+                what: "table",
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Writes the picture as a grey PNG: a file whole or not at all.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub(super) fn write(&self, pixels: &[u8], size: ImageSize) -> anyhow::Result<()> {
+        let ImageSize { width, height } = size;
+        match self {
+            Self::File(path) => png::write(path, pixels, width, height).map_err(|error| {
+                anyhow::anyhow!("{}: the picture cannot be written: {error}", path.display())
+            }),
+            Self::Stdout => {
+                let bytes = png::encode(pixels, width, height)?;
+                let mut stdout = io::stdout().lock();
+                stdout
+                    .write_all(&bytes)
+                    .and_then(|()| stdout.flush())
+                    .map_err(StdoutError)?;
+                Ok(())
+            }
+        }
+    }
+}
+
+impl fmt::Display for Destination {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Stdout => write!(f, "standard output"),
+            Self::File(path) => write!(f, "{}", path.display()),
+        }
+    }
+}
+
+/// `mine.toml` gives `mine.png`, `classic` gives `classic.png`.
+fn default_name(scene: &Path) -> PathBuf {
+    let mut name = scene
+        .file_stem()
+        .map_or_else(|| OsString::from("picture"), OsString::from);
+    name.push(".png");
+    name.into()
+}

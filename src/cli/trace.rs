@@ -1,0 +1,128 @@
+//! `darkness trace`: what happens to each ray of a list.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, BufWriter, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::method::{Method, MethodArgs};
+use super::progress::Report;
+use super::rays_csv::Rays;
+use super::{Misuse, StdoutError, start_threads};
+use crate::orbit::exact::Exact;
+use crate::orbit::{EventKind, Fate, MIN_U, OrbitError, Orbits, Ray};
+
+/// Tell what happens to single rays: CSV in, CSV out
+///
+/// Reads CSV with a header that names the columns u0 (inverse radius where the ray starts, in inverse Schwarzschild radii) and dudphi (du/dφ
+/// there, inf and -inf allowed: straight in and straight out). Other columns, blank lines and lines that begin with # are ignored.
+///
+/// Writes the columns u0,dudphi,event,radius,angle: for each ray, in the order they happen, its inbound and outbound crossings of each radius,
+/// then its capture (radius 1) or escape (radius inf), with the angle swept from the start, in radians.
+#[derive(Debug, Args)]
+pub(super) struct TraceArgs {
+    /// The CSV file, or - for the standard input [default: -]
+    #[arg(value_name = "FILE")]
+    input: Option<PathBuf>,
+    /// A radius whose crossings are told, in Schwarzschild radii; may be given again, or several with commas
+    #[arg(
+        long = "radius",
+        value_name = "R",
+        value_parser = radius,
+        value_delimiter = ',',
+        allow_negative_numbers = true,
+        default_values = ["3", "6", "12", "30"]
+    )]
+    radii: Vec<f64>,
+    #[command(flatten)]
+    method: MethodArgs,
+}
+
+fn radius(text: &str) -> Result<f64, String> {
+    let radius: f64 = text
+        .trim()
+        .parse()
+        .map_err(|_| "a radius is a number above 1, in Schwarzschild radii".to_owned())?;
+    if radius > 1.0 && radius <= 1.0 / MIN_U {
+        Ok(radius)
+    } else {
+        Err(OrbitError::Radius { radius }.to_string())
+    }
+}
+
+/// What is written and read at a time.
+const BUFFER: usize = 1 << 16;
+
+/// Runs the verb.
+pub(super) fn run(args: &TraceArgs, report: Report) -> anyhow::Result<()> {
+    let method = args.method.check()?;
+    let (input, name) = open(args.input.as_deref())?;
+    let mut rays = Rays::new(input, name)?;
+    start_threads(None)?;
+
+    let method = method.ready(report)?;
+    let mut out = BufWriter::with_capacity(BUFFER, io::stdout().lock());
+    let traced = match &method {
+        Method::Table(table) => trace(&table.lookup(), &mut rays, &args.radii, &mut out),
+        Method::Exact => trace(&Exact, &mut rays, &args.radii, &mut out),
+        Method::Integrate(adaptive) => trace(adaptive, &mut rays, &args.radii, &mut out),
+    };
+    // What comes before a refused row is right, and stays.
+    let flushed = out.flush().map_err(StdoutError);
+    traced?;
+    Ok(flushed?)
+}
+
+/// The input, and what it is called in messages.
+fn open(input: Option<&Path>) -> anyhow::Result<(Box<dyn BufRead>, String)> {
+    match input {
+        Some(path) if path != Path::new("-") => {
+            let name = path.display().to_string();
+            let file = File::open(path)
+                .map_err(|error| anyhow::anyhow!("{name}: the rays cannot be read: {error}"))?;
+            Ok((Box::new(BufReader::with_capacity(BUFFER, file)), name))
+        }
+        // Without a word the program would seem to hang.
+        None if io::stdin().is_terminal() => Err(Misuse::NoRays.into()),
+        _ => Ok((Box::new(io::stdin().lock()), "standard input".into())),
+    }
+}
+
+fn trace(
+    orbits: &impl Orbits,
+    rays: &mut Rays<impl BufRead>,
+    radii: &[f64],
+    out: &mut impl Write,
+) -> anyhow::Result<()> {
+    writeln!(out, "u0,dudphi,event,radius,angle").map_err(StdoutError)?;
+    while let Some(ray) = rays.next().transpose()? {
+        let events = orbits
+            .follow(ray, radii)
+            .map_err(|error| rays.error(error.into()))?;
+        for event in events {
+            write_event(out, ray, event.kind, event.radius, event.angle).map_err(StdoutError)?;
+        }
+    }
+    Ok(())
+}
+
+/// One row. `{:?}` is the shortest decimal that reads back to the same number; the angle has 17 significant digits, which do so too.
+fn write_event(
+    out: &mut impl Write,
+    ray: Ray,
+    kind: EventKind,
+    radius: f64,
+    angle: f64,
+) -> io::Result<()> {
+    let event = match kind {
+        EventKind::Inbound => "inbound",
+        EventKind::Outbound => "outbound",
+        EventKind::End(Fate::Capture) => "capture",
+        EventKind::End(Fate::Escape) => "escape",
+    };
+    let radius = format!("{radius:?}");
+    let radius = radius.strip_suffix(".0").unwrap_or(&radius);
+    let (u0, dudphi) = (ray.u(), ray.dudphi());
+    writeln!(out, "{u0:?},{dudphi:?},{event},{radius},{angle:.16e}")
+}
