@@ -223,19 +223,27 @@ impl Piece {
             .map(|i| outer.kappa(i))
             .fold(f64::INFINITY, f64::min)
             - critical;
-        // Between the nodes a smooth curve may pass its nodes' extremes a little.
-        let margin = 0.01 * (highest - lowest);
-        let margin = if margin.is_finite() {
-            margin
+        // Between the nodes a smooth curve may pass its nodes' extremes a little: by a share of the angle between them.
+        let (widest, narrowest) = (angle(critical + lowest), angle(critical + highest));
+        let margin = 0.01 * (widest - narrowest);
+        let cotangent = |angle: f64| libm::cos(angle) / libm::sin(angle) - critical;
+        let share = 0.01 * (highest - lowest);
+        let below = if widest + margin < PI {
+            (lowest - share).max(cotangent(widest + margin))
         } else {
-            0.01 * lowest.abs().min(highest.abs())
+            f64::NEG_INFINITY
+        };
+        let above = if narrowest > margin {
+            (highest + share).min(cotangent(narrowest - margin))
+        } else {
+            f64::INFINITY
         };
         Self {
             axis: inner.axis(),
             inner: inner.coefficients(),
             outer: outer.coefficients(),
-            lowest: lowest - margin,
-            highest: highest + margin,
+            lowest: below,
+            highest: above,
         }
     }
 
@@ -264,7 +272,12 @@ impl Quarter {
 /// The angle between two rays of cotangents κ, in radians: without subtracting two angles.
 fn between(low: f64, high: f64) -> f64 {
     if high.is_infinite() || low.is_infinite() {
-        return libm::atan2(1.0, low) - libm::atan2(1.0, high);
+        return angle(low) - angle(high);
     }
     libm::atan2(high - low, 1.0 + high * low)
+}
+
+/// The angle between a ray of cotangent κ and the hole's direction, in [0, π].
+fn angle(kappa: f64) -> f64 {
+    libm::atan2(1.0, kappa)
 }

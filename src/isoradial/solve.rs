@@ -110,9 +110,9 @@ impl Target {
             let change = (next - h).abs();
             previous = residual.is_finite().then_some((h, residual));
             h = next;
-            // The secant's error after a step is far below the step: 1e-9 of h leaves less than 1e-15.
+            // Where the residual bends like a root (a ray that grazes the radius) the secant's error is of the size of its step.
             let bracketed = high - low <= 4.0 * f64::EPSILON * h.abs();
-            if (secant == Some(next) && change <= 1e-9 * h.abs()) || bracketed {
+            if (secant == Some(next) && change <= 1e-13 * h.abs()) || bracketed {
                 return h;
             }
         }

@@ -151,12 +151,10 @@ pub(crate) fn without_turning_point(e2: f64, delta: f64, from: f64, to: f64) -> 
     let (px, py) = (from_p(x), from_p(y));
     let (rx, ry) = ((px * px + q * q).sqrt(), (py * py + q * q).sqrt());
     let root = (x + minus_u1).sqrt() + (y + minus_u1).sqrt();
-    // √Q2(x) + √Q2(y) − (x − y): with p between y and x, |u − p| cancels against the width and q²/(√Q2 + |u − p|) is left.
-    let excess = if px > 0.0 && py < 0.0 {
-        q * q / (rx + px) + q * q / (ry - py)
-    } else {
-        rx + ry - width
-    };
+    // √Q2(x) + √Q2(y) − (x − y) = (√Q2(x) − (x − p)) + (√Q2(y) + (y − p)), each by its conjugate where it would subtract.
+    let above = if px > 0.0 { q * q / (rx + px) } else { rx - px };
+    let below = if py < 0.0 { q * q / (ry - py) } else { ry + py };
+    let excess = above + below;
     let s = root * root * excess * (rx + ry + width);
     let v = 2.0 * (c * c + q * q).sqrt();
     // D − V without subtracting: 4(c² − c² − q²)/(D + V).

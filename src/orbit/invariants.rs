@@ -88,7 +88,15 @@ impl Orbit {
         } else {
             u0 + u - u0 * u0 - u0 * u - u * u
         };
-        let squared = self.start.slope * self.start.slope + (u0 - u) * factor;
+        let slope2 = self.start.slope * self.start.slope;
+        // Where u̇² is small against the start's, which is nearer to the photon sphere, a difference from the start's keeps few digits, and
+        // s² + Δ all of them.
+        let s = critical_slope(u);
+        let squared = if s * s + self.delta.abs() < slope2 {
+            s * s + self.delta
+        } else {
+            slope2 + (u0 - u) * factor
+        };
         let same_side = match self.family {
             Family::Monotone => true,
             Family::Scattered => three_u_minus_two(u) < 0.0,

@@ -8,7 +8,7 @@
 //! |---|---|---|---|---|
 //! | critical | 0.64 ≤ 27e²/4 ≤ 3 | γ = √(u + 1/3), e | A(e), B(γ, e) | J = ±A ln((s + \|u̇\|)/√\|Δ\|) + (\|u̇\|/γ²) B, a difference or a sum of two J |
 //! | weak | 27e²/4 < 0.64, u < 2/3 | v = u/e, `t = √(1 − e/e_c)` | V(v, t) | to the periapsis: \|u̇\|/(e + u) V |
-//! | trapped | 27e²/4 < 0.64, u > 2/3 | u, t | Z(u, t) | to the apoapsis: \|u̇\| Z |
+//! | trapped | 27e²/4 < 0.64, u > 2/3 | u, t | Z(u, t) | to the apoapsis: \|u̇\|/(u − 0.39) Z |
 //! | radial | 27e²/4 > 3 | u, 1/e² | H(u, 1/e²) | difference of two H, over e |
 //!
 //! `Δ = e² − 4/27`, `e_c² = 4/27`. The borders were chosen by measuring where the charts on both sides need equally many nodes.
@@ -30,7 +30,7 @@
 //!
 //! *Weak* and *trapped*: the angle to the turning point is odd in u̇ and analytic in u̇², so over u̇ it is analytic in u, beyond the turning
 //! point too; its next singularity is the other turning point, for small e the mirrored one at v = −1, where a factor 1 + v makes a root of a
-//! pole. In flat space `V = acos v √((1 + v)/(1 − v))`.
+//! pole; u − 0.39 does so for the trapped rays, whose next singularity is the periapsis at u2 < 0.3963. In flat space `V = acos v √((1 + v)/(1 − v))`.
 //!
 //! *Radial*: `H = ∫₀ᵘ du/√(1 − u²(1 − u)/e²)` is analytic in u and 1/e², and gives short angles with small absolute error.
 
@@ -46,6 +46,9 @@ pub(crate) const UPPER_E2: f64 = 3.0 * CRITICAL_E2;
 
 /// Smallest u of the trapped chart: just below the apoapsis, which is at u3 = 0.87662 where e² is [`LOWER_E2`].
 pub(crate) const TRAPPED_U: f64 = 0.8766;
+
+/// Near the largest periapsis u2 of the trapped chart's orbits, beyond the photon sphere: 0.39630 where e² is [`LOWER_E2`].
+pub(crate) const TRAPPED_POLE: f64 = 0.39;
 
 /// Largest v of the weak chart: just above u2/e = 1/√(1 − u2), which is 1.28704 where e² is [`LOWER_E2`].
 pub(crate) const WEAK_V: f64 = 1.2871;
@@ -159,11 +162,11 @@ pub(crate) fn weak(v: f64, t: f64) -> f64 {
     e * (v + 1.0) * RealRoots::new(e2, e2 - CRITICAL_E2).to_periapsis_over_slope(v * e)
 }
 
-/// `Z(u, t)`: the angle from u to the apoapsis, over |u̇|; `e = e_c(1 − t²)`.
+/// `Z(u, t)`: the angle from u to the apoapsis, over |u̇|/(u − 0.39); `e = e_c(1 − t²)`.
 pub(crate) fn trapped(u: f64, t: f64) -> f64 {
     let e = slope_at_infinity(t);
     let e2 = e * e;
-    RealRoots::new(e2, e2 - CRITICAL_E2).to_apoapsis_over_slope(u)
+    (u - TRAPPED_POLE) * RealRoots::new(e2, e2 - CRITICAL_E2).to_apoapsis_over_slope(u)
 }
 
 /// `H(u, 1/e²)`.

@@ -59,7 +59,8 @@ fn remedy(path: &Path, force: bool) -> String {
     if default_path(name) == path {
         format!("darkness table {name}{force}")
     } else {
-        format!("darkness table {name}{force} -o '{}'", path.display())
+        let quoted = path.display().to_string().replace('\'', "'\\''");
+        format!("darkness table {name}{force} -o '{quoted}'")
     }
 }
 
@@ -82,12 +83,13 @@ pub fn open(path: &Path) -> Result<Table<Mmap>, TableError> {
             source,
         },
     };
-    let file = File::open(path).map_err(unreadable)?;
-    let kind = file.metadata().map_err(unreadable)?;
+    // Asked before it is opened: to open a pipe is to wait for its other end.
+    let kind = std::fs::metadata(path).map_err(unreadable)?;
     if !kind.is_file() {
         let source = io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file");
         return Err(unreadable(source));
     }
+    let file = File::open(path).map_err(unreadable)?;
     let unusable = |problem| TableError::Unusable {
         path: path.into(),
         problem,

@@ -192,6 +192,9 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Layout, FormatError> {
     if metadata.conventions != CONVENTIONS {
         return Err(damaged("its numbers follow other conventions"));
     }
+    if !(0.0..f64::INFINITY).contains(&metadata.measured_error) {
+        return Err(damaged("its measured error is no error"));
+    }
     if !metadata.spec.is_sound() {
         return Err(damaged("its grid has sizes that no table has"));
     }

@@ -1,6 +1,6 @@
 //! Swept angles read from a table.
 
-use super::charts::{CRITICAL_B, LOWER_E2, UPPER_E2};
+use super::charts::{CRITICAL_B, LOWER_E2, TRAPPED_POLE, UPPER_E2};
 use super::logarithm::ln_ratio;
 use super::spec::{Axes, Spec};
 use super::spline::{Scale, Stencil, value, values_2d};
@@ -75,7 +75,7 @@ impl<'a> Lookup<'a> {
         let e = orbit.e2.sqrt();
         let t = (1.0 - e * CRITICAL_B).sqrt();
         let angles = if orbit.family == Family::Trapped {
-            slope * self.trapped.at(&self.trapped.orbit.stencil(t), u)
+            slope / (u - TRAPPED_POLE) * self.trapped.at(&self.trapped.orbit.stencil(t), u)
         } else {
             slope / (u + e) * self.weak.at(&self.weak.orbit.stencil(t), u * (1.0 / e))
         };
@@ -153,10 +153,12 @@ impl SweptAngles for Lookup<'_> {
         let (amplitude, smooth, arguments) = self.critical_parts(orbit, Pair::new(from, to));
         let logarithms = amplitude * ln_ratio(arguments[0] * arguments[1], -orbit.delta);
         let smooth = smooth[0] + smooth[1];
-        if orbit.family == Family::Trapped {
+        let angle = if orbit.family == Family::Trapped {
             logarithms + smooth
         } else {
             logarithms - smooth
-        }
+        };
+        // From turning point to turning point it is 0, but for the rounding of two terms that cancel.
+        angle.max(0.0)
     }
 }

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::charts::{CRITICAL_B, LOWER_E2};
+use super::charts::{CRITICAL_B, TRAPPED_U, WEAK_V};
 use super::lookup::Lookup;
 use super::spec::Spec;
 use super::spline::Axis;
@@ -21,10 +21,18 @@ pub struct Measured {
 }
 
 /// Rays per cell of an orbit axis.
-const RAYS: u32 = 48;
+const RAYS: u32 = 64;
 
-/// The largest error of `lookup` (a table made after `spec`): for the middle of every cell of every orbit axis, some
-/// rays spread evenly over the starts that such an orbit has, each followed to its end and to a radius of its own.
+/// The orbits of one `e`, and the places to take on them.
+#[derive(Debug, Clone, Copy)]
+struct Row {
+    e: f64,
+    /// Least and greatest inverse radius.
+    places: (f64, f64),
+}
+
+/// The largest error of `lookup` (a table made after `spec`): chart by chart, for the middle of every cell of the orbit axis, rays whose
+/// starts and radii are spread evenly over the chart's places, each followed to its end and to its radius.
 ///
 /// Both methods are given the same orbit, so that what is compared is the interpolation alone. The result depends on nothing else, thread
 /// count included.
@@ -32,25 +40,43 @@ pub fn measure(spec: &Spec, lookup: &Lookup<'_>) -> Measured {
     let middles =
         |axis: Axis| (1..axis.nodes).map(move |i| 0.5 * (axis.node(i - 1) + axis.node(i)));
     let from_t = |t: f64| (1.0 - t) * (1.0 + t) / CRITICAL_B;
-    let mut slopes: Vec<f64> = Vec::new();
-    slopes.extend(middles(spec.critical_axes().orbit));
-    slopes.extend(middles(spec.weak_axes().orbit).map(from_t));
-    slopes.extend(middles(spec.trapped_axes().orbit).map(from_t));
-    slopes.extend(middles(spec.radial_axes().orbit).map(|b2: f64| 1.0 / b2.sqrt()));
-    // The borders themselves, where errors are largest.
-    slopes.extend([LOWER_E2 * 0.999_999, LOWER_E2 * 1.000_001].map(f64::sqrt));
-    slopes
-        .par_iter()
-        .map(|&e| along_orbit(e, lookup))
+    let mut rows: Vec<Row> = Vec::new();
+    rows.extend(middles(spec.critical_axes().orbit).map(|e| Row {
+        e,
+        places: (0.0, 1.0),
+    }));
+    rows.extend(middles(spec.weak_axes().orbit).map(from_t).map(|e| Row {
+        e,
+        places: (0.0, WEAK_V * e),
+    }));
+    rows.extend(middles(spec.trapped_axes().orbit).map(from_t).map(|e| Row {
+        e,
+        places: (apoapsis(e), 1.0),
+    }));
+    rows.extend(middles(spec.radial_axes().orbit).map(|b2| Row {
+        e: 1.0 / b2.sqrt(),
+        places: (0.0, 1.0),
+    }));
+    rows.par_iter()
+        .map(|&row| along_orbit(row, lookup))
         .reduce(Measured::default, |a, b| Measured {
             error: a.error.max(b.error),
             angles: a.angles + b.angles,
         })
 }
 
+/// A little less than the apoapsis' inverse radius u3: `1 − u3 = e²/u3²`, and u3 is at least [`TRAPPED_U`].
+fn apoapsis(e: f64) -> f64 {
+    (1.0 - e * e / (TRAPPED_U * TRAPPED_U)).max(TRAPPED_U)
+}
+
 /// The rays of one `e`: starts and radii from the additive sequence of the plastic number's powers, which fills the square evenly
 /// (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
-fn along_orbit(e: f64, lookup: &Lookup<'_>) -> Measured {
+fn along_orbit(row: Row, lookup: &Lookup<'_>) -> Measured {
+    let Row {
+        e,
+        places: (least, greatest),
+    } = row;
     let mut worst = Measured::default();
     for k in 0..RAYS {
         let fraction = |step: f64| {
@@ -61,8 +87,14 @@ fn along_orbit(e: f64, lookup: &Lookup<'_>) -> Measured {
             fraction(0.754_877_666_246_692_7),
             fraction(0.569_840_290_998_053_2),
         );
-        // Half of the starts crowd towards infinity, where cameras stand.
-        let u0 = if k % 2 == 0 { p } else { p * p * p * e };
+        // A quarter of the starts crowd towards each end: towards infinity stand most cameras.
+        let p = match k % 4 {
+            0 => p * p * p,
+            1 => 1.0 - p * p * p,
+            _ => p,
+        };
+        let u0 = least + (greatest - least) * p;
+        let u = least + (greatest - least) * q;
         let slope2 = e * e - u0 * u0 * (1.0 - u0);
         if slope2 < 0.0 {
             continue;
@@ -72,7 +104,7 @@ fn along_orbit(e: f64, lookup: &Lookup<'_>) -> Measured {
                 continue;
             };
             let orbit = Orbit::new(ray);
-            let (table, exact) = (lookup.crossings(&orbit, q), Exact.crossings(&orbit, q));
+            let (table, exact) = (lookup.crossings(&orbit, u), Exact.crossings(&orbit, u));
             let pairs = [
                 (Some(lookup.to_end(&orbit)), Some(Exact.to_end(&orbit))),
                 (table.inbound, exact.inbound),

@@ -129,6 +129,7 @@ impl Spec {
             .iter()
             .all(|n| allowed.contains(&n.place) && allowed.contains(&n.orbit))
             && self.tolerance > 0.0
+            && self.tolerance.is_finite()
     }
 
     /// The most nodes an axis may have: the sizes of a table of them still fit any counter.

@@ -21,8 +21,35 @@ pub(crate) struct ReferenceRay {
     pub(crate) condition: f64,
 }
 
+impl ReferenceRay {
+    /// The row in words, for a failing test.
+    pub(crate) fn name(&self) -> String {
+        format!(
+            "{}, u0 = {:?}, dudphi = {:?}, {:?} at {}",
+            self.case, self.u0, self.dudphi, self.kind, self.radius
+        )
+    }
+}
+
+/// The radii whose crossings the reference knows.
+pub(crate) const RADII: [f64; 4] = [3.0, 6.0, 12.0, 30.0];
+
+/// The reference's rays, each with all its events in the order they happen.
+pub(crate) fn flights() -> Vec<Vec<ReferenceRay>> {
+    let rows = reference_rays();
+    assert!(rows.len() > 2000, "only {} rows", rows.len());
+    let same_ray = |a: &ReferenceRay, b: &ReferenceRay| {
+        a.u0.to_bits() == b.u0.to_bits() && a.dudphi.to_bits() == b.dudphi.to_bits()
+    };
+    let mut flights: Vec<_> = rows.chunk_by(same_ray).map(<[_]>::to_vec).collect();
+    for flight in &mut flights {
+        flight.sort_by(|a, b| a.angle.total_cmp(&b.angle));
+    }
+    flights
+}
+
 /// The rows of `tests/reference/rays.csv`, in the file's order: all events of one ray stand together.
-pub(crate) fn reference_rays() -> Vec<ReferenceRay> {
+fn reference_rays() -> Vec<ReferenceRay> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/rays.csv");
     let text = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"));
     let mut lines = text.lines();
