@@ -99,7 +99,7 @@ impl Isoradials {
     /// The curves of `sight`, from a method's swept angles.
     ///
     /// Orders are added while the last one is thicker than a thousandth of a pixel; the curves' nodes are doubled, piece by
-    /// piece, until they are right to the tolerance in the middle of every cell. [`Self::error`] tells what was reached.
+    /// piece, until they are right to a tenth of the tolerance in the middle of every cell, or as right as the angles are. [`Self::error`] tells what was reached.
     pub fn new(sight: &Sight, angles: &impl SweptAngles) -> Self {
         let mut curves = Self {
             critical: sight.critical(),

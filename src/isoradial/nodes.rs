@@ -8,6 +8,9 @@ use crate::table::spline::{Axis, Scale, coefficients, value};
 /// Fewest cells of a piece: a quarter turn in eight.
 const FEWEST_CELLS: usize = 8;
 
+/// Cells from which on a doubling brings down the error of a curve that is resolved by far more than a half.
+const SETTLED_CELLS: usize = 128;
+
 /// Most cells of a piece. A disk to r = 1e6 bends its curve within 1e-3 of φ = π, which takes some thousands.
 const MOST_CELLS: usize = 1 << 14;
 
@@ -23,7 +26,9 @@ pub(super) struct Nodes {
 }
 
 impl Nodes {
-    /// The curve of `target`, its nodes doubled until the error in the middle of every cell is within the tolerance.
+    /// The curve of `target`, its nodes doubled until the error in the middle of every cell is a tenth of the tolerance: the middles
+    /// may miss the largest error, and the angles have one of their own. Once doubling no longer helps, only the latter is left, and the
+    /// curve is as good as it gets.
     pub(super) fn draw(
         target: &Target,
         quarter: Quarter,
@@ -33,11 +38,14 @@ impl Nodes {
         let mut nodes = Self::coarsest(target, quarter, angles);
         loop {
             let (finer, error) = nodes.refined(target, sight, angles);
-            if error <= sight.tolerance || finer.cells() >= MOST_CELLS {
+            let settled = nodes.cells() >= SETTLED_CELLS
+                && error > 0.5 * nodes.error
+                && error <= 100.0 * sight.tolerance;
+            if error <= 0.1 * sight.tolerance || settled || finer.cells() >= MOST_CELLS {
                 nodes.error = error;
                 return nodes;
             }
-            nodes = finer;
+            nodes = Self { error, ..finer };
         }
     }
 

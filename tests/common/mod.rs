@@ -1,5 +1,8 @@
 //! What several tests read: the reference rays.
 
+// Each test is a program of its own, and takes what it needs.
+#![allow(dead_code)]
+
 use darkness::orbit::{EventKind, Fate};
 
 /// One event of one ray, known to 17 digits or more.
@@ -49,7 +52,7 @@ pub(crate) fn flights() -> Vec<Vec<ReferenceRay>> {
 }
 
 /// The rows of `tests/reference/rays.csv`, in the file's order: all events of one ray stand together.
-fn reference_rays() -> Vec<ReferenceRay> {
+pub(crate) fn reference_rays() -> Vec<ReferenceRay> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/rays.csv");
     let text = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"));
     let mut lines = text.lines();
