@@ -5,8 +5,8 @@ use std::path::Path;
 
 use darkness::table::format::{CONVENTIONS, MAGIC, VERSION};
 use darkness::table::{
-    FormatError, Memory, Metadata, Nodes, Spec, Table, TableError, default_path, generate, open,
-    save,
+    FixedBytes, FormatError, Memory, Metadata, Nodes, Spec, Table, TableError, default_path,
+    generate, open, save,
 };
 
 /// Where the format's page has the preamble's fields.
@@ -40,6 +40,8 @@ impl Aligned {
     }
 }
 
+impl FixedBytes for Aligned {}
+
 impl AsRef<[u8]> for Aligned {
     fn as_ref(&self) -> &[u8] {
         &bytemuck::cast_slice(&self.words)[..self.length]
@@ -48,6 +50,8 @@ impl AsRef<[u8]> for Aligned {
 
 /// Bytes seen through a reference: nothing is copied to ask about them.
 struct View<'a>(&'a [u8]);
+
+impl FixedBytes for View<'_> {}
 
 impl AsRef<[u8]> for View<'_> {
     fn as_ref(&self) -> &[u8] {

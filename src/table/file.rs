@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use memmap2::Mmap;
 
-use super::Table;
 use super::format::FormatError;
 use super::spec::Spec;
+use super::{FixedBytes, Table};
 
 /// Why a table's file could not be used or written. Each names the file, and says what to do.
 #[derive(Debug, thiserror::Error)]
@@ -109,7 +109,7 @@ pub fn open(path: &Path) -> Result<Table<Mmap>, TableError> {
 ///
 /// # Errors
 /// [`TableError::Unwritable`]; then `path` is as it was.
-pub fn save<B: AsRef<[u8]>>(table: &Table<B>, path: &Path) -> Result<(), TableError> {
+pub fn save<B: FixedBytes>(table: &Table<B>, path: &Path) -> Result<(), TableError> {
     let folder = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty());

@@ -28,8 +28,8 @@ pub use spec::{Nodes, Spec};
 use crate::orbit::{Event, OrbitError, Orbits, Ray};
 use format::Layout;
 
-/// A table over any bytes that begin at a multiple of 8: a mapped file, or [`Memory`].
-#[derive(Debug, Clone)]
+/// A table over bytes that begin at a multiple of 8: a mapped file, or [`Memory`].
+#[derive(Debug)]
 pub struct Table<B> {
     bytes: B,
     layout: Layout,
@@ -45,7 +45,17 @@ impl AsRef<[u8]> for Memory {
     }
 }
 
-impl<B: AsRef<[u8]>> Table<B> {
+/// Bytes that stay where they are in memory while their owner moves, so that numbers aligned once stay aligned. An array within its owner
+/// is none.
+pub trait FixedBytes: AsRef<[u8]> {}
+
+impl FixedBytes for memmap2::Mmap {}
+impl FixedBytes for Memory {}
+impl FixedBytes for &[u8] {}
+impl FixedBytes for Vec<u8> {}
+impl FixedBytes for Box<[u8]> {}
+
+impl<B: FixedBytes> Table<B> {
     /// A table from its bytes, every one of which is checked: see [`mod@format`].
     ///
     /// # Errors
@@ -67,13 +77,13 @@ impl<B: AsRef<[u8]>> Table<B> {
 
     /// The table, ready for lookups. Take it once, outside the loop.
     pub fn lookup(&self) -> Lookup<'_> {
-        // The cast was checked when the table was opened, and bytes behind `AsRef` stay where they are.
+        // The cast was checked when the table was opened, and the bytes are where they were.
         let numbers = format::numbers(self.bytes(), self.layout.numbers_at).unwrap_or_default();
         Lookup::new(&self.layout.metadata.spec, numbers)
     }
 }
 
-impl<B: AsRef<[u8]> + Sync> Orbits for Table<B> {
+impl<B: FixedBytes + Sync> Orbits for Table<B> {
     fn follow(&self, ray: Ray, radii: &[f64]) -> Result<Vec<Event>, OrbitError> {
         self.lookup().follow(ray, radii)
     }
