@@ -1,5 +1,5 @@
-//! A 1920 × 1080 mask frame on one thread: isoradial curves from the open table against plain RK4, every pixel's ray stepped
-//! through the orbit equation (h = 0.02 in φ, its steps ended exactly at each crossing of the disk's plane).
+//! A 1920 × 1080 mask frame on one thread: isoradial curves from the open table against plain RK4, every pixel's ray
+//! stepped through the orbit equation (h = 0.02 in φ, its steps ended exactly at each crossing of the disk's plane).
 //!
 //! `cargo bench --bench frame`
 

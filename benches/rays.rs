@@ -1,4 +1,5 @@
-//! One swept angle: the table against the exact method, the integrators beside them, on the same rays in the same run.
+//! One swept angle: the table against the exact method, the integrators beside them, on the same rays in the same
+//! run.
 //!
 //! `cargo bench --bench rays`
 

@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// Writes a file through `fill`: into a hidden temporary file in the same folder, synced, then renamed over `path`. Whatever stops the
-/// process or the disk on the way, `path` holds its old content, the new, or nothing.
+/// Writes a file through `fill`: into a hidden temporary file in the same folder, synced, then renamed over `path`.
+/// Whatever stops the process or the disk on the way, `path` holds its old content, the new, or nothing.
 ///
 /// Its mode follows the umask, as that of any new file.
 ///
@@ -35,7 +35,8 @@ pub fn write_whole(
     }
     temporary.as_file().sync_all()?;
     temporary.persist(path).map_err(|error| error.error)?;
-    // The rename itself lasts once the folder is on the disk; not every system opens folders, and the file is whole either way.
+    // The rename itself lasts once the folder is on the disk; not every system opens folders, and the file is whole
+    // either way.
     if let Ok(folder) = File::open(folder) {
         let _ = folder.sync_all();
     }

@@ -1,5 +1,5 @@
-//! Guards against a command line that writes where it should not, goes on with what is wrong, panics, or says something else than
-//! the library answers.
+//! Guards against a command line that writes where it should not, goes on with what is wrong, panics, or says
+//! something else than the library answers.
 
 mod common;
 
@@ -43,7 +43,8 @@ fn printed(command: Command) -> String {
     String::from_utf8(done(command).0).unwrap()
 }
 
-/// Runs it, and expects it to end with `code`, a sentence that has all of `words`, and nothing on the standard output.
+/// Runs it, and expects it to end with `code`, a sentence that has all of `words`, and nothing on the standard
+/// output.
 fn refused(mut command: Command, code: i32, words: &[&str]) {
     let output = command.output().unwrap();
     let stderr = String::from_utf8(output.stderr).unwrap();

@@ -1,5 +1,5 @@
-//! Guards against bytes that depend on the number of threads or on the processor: the program is run with one thread, with two, and with the
-//! C library kept from its fused and wide code paths.
+//! Guards against bytes that depend on the number of threads or on the processor: the program is run with one thread,
+//! with two, and with the C library kept from its fused and wide code paths.
 
 use std::fs;
 use std::path::Path;

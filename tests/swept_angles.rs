@@ -1,6 +1,6 @@
-//! Guards against a method that loses an event, invents one, tells a ray's fate wrongly or sweeps a wrong angle: the exact
-//! method and the three tables against the reference's rays, against each other everywhere else, against the integrated equation, and against
-//! figures in print.
+//! Guards against a method that loses an event, invents one, tells a ray's fate wrongly or sweeps a wrong angle: the
+//! exact method and the three tables against the reference's rays, against each other everywhere else, against the
+//! integrated equation, and against figures in print.
 
 mod common;
 #[path = "common/known_values.rs"]
@@ -19,8 +19,8 @@ use darkness::orbit::{Event, EventKind, MIN_U, Orbits, Ray};
 use known_values::{KnownValue, known_values};
 use tables::table;
 
-/// Every event of every reference ray, each angle within `tolerance + 16 ε·condition` (the budgets of design sections 2 and 3;
-/// 16 ε·condition is what some units in the last place of the ray's own numbers do to the angle).
+/// Every event of every reference ray, each angle within `tolerance + 16 ε·condition` (the budgets of design sections
+/// 2 and 3; 16 ε·condition is what some units in the last place of the ray's own numbers do to the angle).
 fn check_against_reference(name: &str, method: &impl Orbits, tolerance: f64) {
     let (mut compared, mut worst, mut worst_at) = (0, 0.0, String::new());
     for flight in flights() {
@@ -137,7 +137,8 @@ fn critical_slope(u: f64) -> f64 {
     (u - 2.0 / 3.0).abs() * (u + 1.0 / 3.0).sqrt()
 }
 
-/// Rays about the borders of the table's charts, which lie at e² = 0.64 and 3 times 4/27 (see the page of `table::charts`).
+/// Rays about the borders of the table's charts, which lie at e² = 0.64 and 3 times 4/27 (see the page of
+/// `table::charts`).
 fn border_rays() -> Vec<(f64, f64)> {
     let mut rays = Vec::new();
     for factor in [0.64, 1.0, 3.0] {
@@ -259,7 +260,8 @@ const MANY_RADII: [f64; 16] = [
     1e12,
 ];
 
-/// What is wrong with a table's answer about one ray, if anything is; else its worst difference from the exact answer.
+/// What is wrong with a table's answer about one ray, if anything is; else its worst difference from the exact
+/// answer.
 fn difference(method: &impl Orbits, u: f64, w: f64) -> Result<f64, String> {
     let ray = Ray::new(u, w).unwrap();
     let events = method.follow(ray, &MANY_RADII).unwrap();
@@ -339,8 +341,8 @@ fn the_table_is_right_everywhere_else() {
     check_against_exact("spread", &spread_rays());
 }
 
-/// Rays all over one chart (the page of `table::charts` says where each lies), crowded to where its errors are: beside the chart's
-/// neighbours, infinity and the horizon.
+/// Rays all over one chart (the page of `table::charts` says where each lies), crowded to where its errors are:
+/// beside the chart's neighbours, infinity and the horizon.
 fn rays_of_chart(chart: &str) -> Vec<(f64, f64)> {
     let (mut rays, mut k) = (Vec::new(), 0);
     while rays.len() < 12_000 {
@@ -374,8 +376,8 @@ fn rays_of_chart(chart: &str) -> Vec<(f64, f64)> {
     rays
 }
 
-/// Every table keeps its own promise in every chart, off its grid: against the exact answer for the same orbit, so that beside
-/// the tolerance there is only rounding, 16 ε of the angle.
+/// Every table keeps its own promise in every chart, off its grid: against the exact answer for the same orbit, so
+/// that beside the tolerance there is only rounding, 16 ε of the angle.
 #[test]
 fn tables_are_as_right_as_promised_all_over_every_chart() {
     let mut broken = Vec::new();
@@ -411,8 +413,9 @@ fn tables_are_as_right_as_promised_all_over_every_chart() {
     assert!(broken.is_empty(), "{}", broken.join("\n"));
 }
 
-/// The integrated equation knows no elliptic integral and no first integral. Its default tolerance is 1e-9 an angle; the exact method's 1e-12
-/// and 64 ε·condition, condition below 1/1e-3 for rays at least that share from critical, add under 2e-11.
+/// The integrated equation knows no elliptic integral and no first integral. Its default tolerance is 1e-9 an angle;
+/// the exact method's 1e-12 and 64 ε·condition, condition below 1/1e-3 for rays at least that share from critical,
+/// add under 2e-11.
 #[test]
 fn exact_angles_solve_the_equation() {
     const ALLOWED: f64 = 1.02e-9;
@@ -495,8 +498,8 @@ fn deflections_are_darwins() {
     }
 }
 
-/// `α → −ln(b/b_c − 1) + ln(216(7 − 4√3)) − π` (Bozza 2002, eq. 35 for the Schwarzschild hole; the next terms are of the order
-/// ε ln ε, ε = `b/b_c − 1`).
+/// `α → −ln(b/b_c − 1) + ln(216(7 − 4√3)) − π` (Bozza 2002, eq. 35 for the Schwarzschild hole; the next terms are of
+/// the order ε ln ε, ε = `b/b_c − 1`).
 #[test]
 fn strong_deflection_is_bozzas() {
     let [constant] = &known_values("strong_deflection_constant")[..] else {
@@ -514,8 +517,8 @@ fn strong_deflection_is_bozzas() {
     }
 }
 
-/// Whether `angle`, a monotone function of a printed number with an error of half a unit in its last place, takes the value
-/// `target` within that error, give or take `tolerance`.
+/// Whether `angle`, a monotone function of a printed number with an error of half a unit in its last place, takes the
+/// value `target` within that error, give or take `tolerance`.
 fn straddles(
     angle: impl Fn(f64) -> f64,
     value: f64,
@@ -530,7 +533,8 @@ fn straddles(
     a.min(b) <= tolerance && a.max(b) >= -tolerance
 }
 
-/// Closest approach of the rays that are deflected by whole turns (Virbhadra & Ellis 2000, table 1): `2 φ(periapsis → ∞) − π = 2πn`.
+/// Closest approach of the rays that are deflected by whole turns (Virbhadra & Ellis 2000, table 1): `2 φ(periapsis →
+/// ∞) − π = 2πn`.
 #[test]
 fn closest_approaches_are_virbhadras_and_ellis() {
     let rows = known_values("closest_approach_alpha_2pi_n");
@@ -589,8 +593,8 @@ fn rounding_near_critical(b: f64) -> f64 {
     16.0 * f64::EPSILON * b / (b - 1.0 / CRITICAL_E2.sqrt()).abs()
 }
 
-/// The borders of the lensing ring and of the photon ring (Gralla, Holz & Wald 2019, eqs 6 and 7; b over M, half a Schwarzschild radius):
-/// rays that sweep ¾ and 1¼ turns from end to end.
+/// The borders of the lensing ring and of the photon ring (Gralla, Holz & Wald 2019, eqs 6 and 7; b over M, half a
+/// Schwarzschild radius): rays that sweep ¾ and 1¼ turns from end to end.
 #[test]
 fn ring_borders_are_those_of_gralla_holz_and_wald() {
     for row in known_values("band_edge_b_over_M") {
@@ -619,7 +623,8 @@ fn ring_borders_are_those_of_gralla_holz_and_wald() {
 }
 
 /// A circle of the disk seen along its axis, in the orders 0 to 3: the ray sweeps a quarter turn and k half turns.
-/// And the isoradials at 80° (Luminet 1979, section 4) at the plate's bottom (α = 0), side and top, where the ray sweeps 10°, 90° and 170°.
+/// And the isoradials at 80° (Luminet 1979, section 4) at the plate's bottom (α = 0), side and top, where the ray
+/// sweeps 10°, 90° and 170°.
 #[test]
 fn circles_of_the_disk_are_seen_where_luminet_saw_them() {
     let mut rows = Vec::new();
@@ -682,8 +687,8 @@ fn far_sight() -> Sight {
 
 /// The isoradial curves of a far camera on the disk's axis: the rings' edges at the known impact parameters.
 ///
-/// The curves are right to a thousandth of a pixel of 1e-5 in b; b = sin ψ/(u0 √(1 − u0)) for the angle ψ from the hole's direction, where
-/// sin ψ = tan ψ = s/z to ψ² = 1e-23.
+/// The curves are right to a thousandth of a pixel of 1e-5 in b; b = sin ψ/(u0 √(1 − u0)) for the angle ψ from the
+/// hole's direction, where sin ψ = tan ψ = s/z to ψ² = 1e-23.
 #[test]
 fn isoradials_of_a_far_camera_are_at_the_known_impact_parameters() {
     let sight = far_sight();
@@ -700,7 +705,8 @@ fn isoradials_of_a_far_camera_are_at_the_known_impact_parameters() {
         for row in &rows {
             let (radius, order) = face_on(&row.argument);
             let inwards = if radius == 3.0 { 1.0 } else { -1.0 };
-            // The curve's 1e-8 (a thousandth of a pixel), and as much again for the table's 1e-9 of angle: |∂b/∂φ| is below r = 12.
+            // The curve's 1e-8 (a thousandth of a pixel), and as much again for the table's 1e-9 of angle: |∂b/∂φ| is
+            // below r = 12.
             let off = inwards * 2e-8;
             let (inside, outside) = (row.value + off, row.value - off);
             assert!(
@@ -713,9 +719,10 @@ fn isoradials_of_a_far_camera_are_at_the_known_impact_parameters() {
 
 /// Each order is in the end e^−π as thick as the one before (Ohanian 1987).
 ///
-/// An order is thickest at its first angle, kπ; for k = 3 the circle r = 12 is there a share ε = 1e-3 farther out than critical (it is 2.1e-4 at 3½π,
-/// see `face_on_b`, and e^{π/2} times as much a quarter turn before), for each further order e^−π of that. The terms left out of the limit are of the
-/// order of ε ln ε (as in Bozza's formula above).
+/// An order is thickest at its first angle, kπ; for k = 3 the circle r = 12 is there a share ε = 1e-3 farther out
+/// than critical (it is 2.1e-4 at 3½π, see `face_on_b`, and e^{π/2} times as much a quarter turn before), for each
+/// further order e^−π of that. The terms left out of the limit are of the order of ε ln ε (as in Bozza's formula
+/// above).
 #[test]
 fn rings_thin_out_by_a_factor_of_exp_pi() {
     let [ratio] = &known_values("ring_ratio")[..] else {

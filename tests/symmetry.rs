@@ -1,5 +1,6 @@
-//! Guards against a picture that depends on where the axes point, on which side is left, or on a place that only the arithmetic finds special: the
-//! photon sphere, the disk's plane and axis, the horizon, infinity, the line to the hole.
+//! Guards against a picture that depends on where the axes point, on which side is left, or on a place that only the
+//! arithmetic finds special: the photon sphere, the disk's plane and axis, the horizon, infinity, the line to the
+//! hole.
 
 #[path = "common/frames.rs"]
 mod frames;
@@ -77,7 +78,8 @@ fn rotated(scene: &Scene, rotation: DQuat) -> Scene {
     )
 }
 
-/// Scenes of every kind, small; their heights are even, so that no row lies in the disk's plane, where turning by a rounding turns all.
+/// Scenes of every kind, small; their heights are even, so that no row lies in the disk's plane, where turning by a
+/// rounding turns all.
 fn all_kinds() -> Vec<Scene> {
     let small = |name| Scene::builtin(name).unwrap().with_size(96, 54).unwrap();
     vec![
@@ -107,8 +109,8 @@ fn all_kinds() -> Vec<Scene> {
     ]
 }
 
-/// The frame by curves from the table, and that of the exact method pixel by pixel, are the same but on edges; so is the table's
-/// pixel by pixel. Returns the exact one, on which both colours are to be seen.
+/// The frame by curves from the table, and that of the exact method pixel by pixel, are the same but on edges; so is
+/// the table's pixel by pixel. Returns the exact one, on which both colours are to be seen.
 fn checked_frame(name: &str, scene: &Scene) -> Vec<u8> {
     let lookup = table("standard").lookup();
     let exact = by_pixels(scene, &Exact);
@@ -149,8 +151,8 @@ fn mirrored(frame: &[u8], width: u32) -> Vec<u8> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 12, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Position, focus, up and normal turned together: the same picture. The turned numbers are rounded, so a pixel may change where an edge
-    /// passes within a thousandth of a pixel.
+    /// Position, focus, up and normal turned together: the same picture. The turned numbers are rounded, so a pixel
+    /// may change where an edge passes within a thousandth of a pixel.
     #[test]
     fn turning_the_whole_scene_changes_nothing(
         (x, y, z) in (-1.0..1.0, -1.0..1.0, -1.0..1.0),
@@ -303,7 +305,8 @@ fn a_camera_on_the_disks_axis_sees_circles() {
     }
 }
 
-/// From just above the horizon all that is not the hole is a window of half-angle `b_c √(1 − 1/r)/r` about the way straight out (Synge 1966).
+/// From just above the horizon all that is not the hole is a window of half-angle `b_c √(1 − 1/r)/r` about the way
+/// straight out (Synge 1966).
 #[test]
 fn a_camera_at_the_horizon_sees_the_window_close() {
     for above in [1e-12, 1e-9, 1e-4] {
@@ -313,7 +316,8 @@ fn a_camera_at_the_horizon_sees_the_window_close() {
             let fov = (2.5 * half_angle).to_degrees();
             let scene = scene(position, 2.0 * position, fov, (96, 96));
             let frame = checked_frame(&format!("r = 1 + {above:e} at {place}"), &scene);
-            // Of 48 pixels from the middle to the edge 38.4 are within the window; the images of the disk come up to it.
+            // Of 48 pixels from the middle to the edge 38.4 are within the window; the images of the disk come up to
+            // it.
             let farthest = (0..96 * 96)
                 .filter(|&k| frame[k] == WHITE)
                 .map(|k| {
@@ -348,8 +352,8 @@ fn a_camera_at_infinity_resolves_the_rings() {
     }
 }
 
-/// Through a wide lens the whole disk is a millionth of a pixel and smaller, wherever it lies: the curves may be off by a thousandth of a pixel, and must not
-/// light one elsewhere.
+/// Through a wide lens the whole disk is a millionth of a pixel and smaller, wherever it lies: the curves may be off
+/// by a thousandth of a pixel, and must not light one elsewhere.
 #[test]
 fn a_disk_too_far_for_the_lens_lights_nothing() {
     let lookup = table("standard").lookup();
@@ -484,7 +488,8 @@ fn the_middle_of_the_hole_is_black() {
     }
 }
 
-/// With one radius for an outer and an inner edge, two disks are one: an edge is where it is whatever lies on its other side.
+/// With one radius for an outer and an inner edge, two disks are one: an edge is where it is whatever lies on its
+/// other side.
 #[test]
 fn neighbouring_disks_make_one() {
     let lookup = table("standard").lookup();
@@ -495,8 +500,8 @@ fn neighbouring_disks_make_one() {
             let near = by_curves(&with_disk(scene, (inner, between)), &lookup);
             let far = by_curves(&with_disk(scene, (between, outer)), &lookup);
             let both: Vec<u8> = near.iter().zip(&far).map(|(&a, &b)| a.max(b)).collect();
-            // The curves of one radius are the same for both disks but for their number of nodes: a sample within a thousandth of a pixel of
-            // an edge may fall between, or come out otherwise.
+            // The curves of one radius are the same for both disks but for their number of nodes: a sample within a
+            // thousandth of a pixel of an edge may fall between, or come out otherwise.
             let count = both.iter().zip(&whole).filter(|(a, b)| a != b).count();
             assert!(
                 count <= 1,
@@ -506,7 +511,8 @@ fn neighbouring_disks_make_one() {
     }
 }
 
-/// Rays at least a thousandth from critical, so that the last place of their numbers moves no angle by more than 1e3 of it.
+/// Rays at least a thousandth from critical, so that the last place of their numbers moves no angle by more than 1e3
+/// of it.
 fn generic_ray() -> impl Strategy<Value = (f64, f64)> {
     (0.01..0.95, -2.0..2.0).prop_filter("near critical", |&(u, w): &(f64, f64)| {
         let e2 = w * w + u * u * (1.0 - u);
@@ -519,7 +525,8 @@ const RADII: [f64; 8] = [1.1, 1.3, 1.7, 2.5, 3.0, 6.0, 12.0, 30.0];
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// e² is the same at every event; and a ray started anew from there, with nothing but its place and slope, has the rest of the same flight before it.
+    /// e² is the same at every event; and a ray started anew from there, with nothing but its place and slope, has
+    /// the rest of the same flight before it.
     #[test]
     fn every_event_is_on_the_same_orbit((u, w) in generic_ray()) {
         let ray = Ray::new(u, w).unwrap();
@@ -548,8 +555,9 @@ proptest! {
         }
     }
 
-    /// At a fixed orbit angle u rises strictly with du/dφ (the page of `isoradial`): the steeper of two rays comes in to a radius earlier and goes out through
-    /// it later. That is why an isoradial is a curve, and those of smaller radii lie at larger slopes.
+    /// At a fixed orbit angle u rises strictly with du/dφ (the page of `isoradial`): the steeper of two rays comes in
+    /// to a radius earlier and goes out through it later. That is why an isoradial is a curve, and those of smaller
+    /// radii lie at larger slopes.
     #[test]
     fn steeper_rays_come_in_earlier_and_go_out_later(
         (u, w) in generic_ray(),

@@ -1,5 +1,5 @@
-//! Guards against a table's file that is read although it is damaged, cut, foreign or of another version; against a write that leaves half a
-//! file or rubbish behind; and against bytes that depend on the machine's threads.
+//! Guards against a table's file that is read although it is damaged, cut, foreign or of another version; against a
+//! write that leaves half a file or rubbish behind; and against bytes that depend on the machine's threads.
 
 use std::path::Path;
 
@@ -301,8 +301,8 @@ fn metadata_with_bytes_to_spare_and_numbers_that_are_none_are_refused() {
     }
 }
 
-/// Every length there is, made absurd under checksums that fit: refused, and no memory asked for it. A request for one of the lengths of 2^44
-/// bytes and more would end this process; one of 2^37 shows as address space.
+/// Every length there is, made absurd under checksums that fit: refused, and no memory asked for it. A request for
+/// one of the lengths of 2^44 bytes and more would end this process; one of 2^37 shows as address space.
 #[test]
 fn absurd_lengths_are_refused_without_being_believed() {
     let table = draft();

@@ -1,15 +1,17 @@
-//! Measuring two or more contenders side by side: on a machine whose speed drifts, only ratios taken at the same moment mean anything.
+//! Measuring two or more contenders side by side: on a machine whose speed drifts, only ratios taken at the same
+//! moment mean anything.
 
 use std::time::Instant;
 
-/// A way of doing the work: its name, and one run of it. What a run returns is summed up and printed as proof that it ran.
+/// A way of doing the work: its name, and one run of it. What a run returns is summed up and printed as proof that it
+/// ran.
 pub(crate) struct Contender<'a> {
     pub(crate) name: &'a str,
     pub(crate) run: Box<dyn FnMut() -> f64 + 'a>,
 }
 
-/// Runs the contenders in turn, round after round, and prints for each the median time per item and the median of its ratio to the first
-/// contender in the same round.
+/// Runs the contenders in turn, round after round, and prints for each the median time per item and the median of its
+/// ratio to the first contender in the same round.
 pub(crate) fn compare(title: &str, items: usize, rounds: usize, contenders: &mut [Contender<'_>]) {
     let mut nanoseconds = vec![Vec::with_capacity(rounds); contenders.len()];
     let mut sum = 0.0;

@@ -21,7 +21,8 @@ const TABLE_VARIABLE: &str = "DARKNESS_TABLE";
 const TABLE_HELP: &str = "The table to read with --method table [env: DARKNESS_TABLE] \
     [default: tables/standard.table, made where it is missing]";
 
-/// What [`Adaptive`] can be asked for: above, it takes the upper bound; at the lower one steps are long since as short as helps.
+/// What [`Adaptive`] can be asked for: above, it takes the upper bound; at the lower one steps are long since as
+/// short as helps.
 const TOLERANCES: RangeInclusive<f64> = 1e-13..=1e-3;
 
 /// The options of every verb that follows rays.
@@ -99,8 +100,8 @@ impl MethodArgs {
     /// Checks the options, and the table's file to its last byte.
     ///
     /// # Errors
-    /// A misuse, or a table that cannot be read. A damaged table is never replaced unasked, nor is one made where the user names a file: only
-    /// the default one is.
+    /// A misuse, or a table that cannot be read. A damaged table is never replaced unasked, nor is one made where the
+    /// user names a file: only the default one is.
     pub(super) fn check(&self) -> anyhow::Result<Checked> {
         if self.integrate_tolerance.is_some() && self.method != MethodName::Integrate {
             return Err(Misuse::ToleranceUnused.into());

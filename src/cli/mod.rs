@@ -1,7 +1,8 @@
 //! The command line: arguments, checked options, the run. One file per verb.
 //!
-//! Data goes to the standard output, everything else to the standard error. The exit code is 0 where the work is done, 1 where it failed,
-//! 2 where the program was misused. A reader that closes the standard output ends the run quietly.
+//! Data goes to the standard output, everything else to the standard error. The exit code is 0 where the work is
+//! done, 1 where it failed, 2 where the program was misused. A reader that closes the standard output ends the run
+//! quietly.
 
 mod method;
 mod picture;
@@ -22,9 +23,9 @@ use progress::{Report, warn};
 
 /// Renders what a black hole does to the light of its accretion disk.
 ///
-/// The equation of light around a Schwarzschild hole is solved once, for all rays, into a small table; a picture of the disk from any place then
-/// takes milliseconds. `darkness render` works at once: it makes the table where it is missing. Lengths are in Schwarzschild radii,
-/// angles in radians.
+/// The equation of light around a Schwarzschild hole is solved once, for all rays, into a small table; a picture of
+/// the disk from any place then takes milliseconds. `darkness render` works at once: it makes the table where it is
+/// missing. Lengths are in Schwarzschild radii, angles in radians.
 #[derive(Debug, Parser)]
 #[command(name = "darkness", version, after_help = EXAMPLES)]
 struct Cli {
@@ -104,7 +105,8 @@ struct Threads {
     threads: Option<u16>,
 }
 
-/// Starts the threads, all there will be: rayon's own start, at the first parallel loop, would panic where the system refuses one.
+/// Starts the threads, all there will be: rayon's own start, at the first parallel loop, would panic where the system
+/// refuses one.
 fn start_threads(threads: Option<u16>) -> anyhow::Result<()> {
     let count = threads.map_or(0, usize::from); // 0: rayon chooses
     rayon::ThreadPoolBuilder::new()

@@ -8,7 +8,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 
 /// The standard error, as the user wants it.
 ///
-/// Nothing here can fail: where the standard error takes no more, the work goes on without words (`eprintln!` would panic).
+/// Nothing here can fail: where the standard error takes no more, the work goes on without words (`eprintln!` would
+/// panic).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Report {
     quiet: bool,
@@ -27,7 +28,8 @@ impl Report {
         }
     }
 
-    /// A bar of `total` steps, which vanishes when it is dropped. Nothing is drawn where the standard error is no terminal.
+    /// A bar of `total` steps, which vanishes when it is dropped. Nothing is drawn where the standard error is no
+    /// terminal.
     pub(super) fn bar(self, total: u64, what: &'static str) -> ProgressBar {
         let target = if self.quiet {
             ProgressDrawTarget::hidden()

@@ -6,8 +6,8 @@ use crate::orbit::{OrbitError, Ray};
 
 /// Rays read from CSV text with a header: an iterator of them, or of why a line holds none.
 ///
-/// Columns stand in any order, others than `u0` and `dudphi` are ignored. Fields may have spaces around them and stand in
-/// quotes. Blank lines and lines that begin with `#` are skipped.
+/// Columns stand in any order, others than `u0` and `dudphi` are ignored. Fields may have spaces around them and
+/// stand in quotes. Blank lines and lines that begin with `#` are skipped.
 #[derive(Debug)]
 pub(super) struct Rays<R> {
     input: R,

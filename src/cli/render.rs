@@ -21,8 +21,8 @@ pub(super) struct RenderArgs {
     /// A scene's TOML file, or the name of a built-in scene (`darkness scene` lists them)
     #[arg(value_name = "SCENE", default_value = DEFAULT_SCENE)]
     scene: PathBuf,
-    /// Where the picture goes: a file ending in .png, or - for the standard output [default: the scene's name with .png, in the current
-    /// folder]
+    /// Where the picture goes: a file ending in .png, or - for the standard output [default: the scene's name with
+    /// .png, in the current folder]
     #[arg(short, long, value_name = "OUT.png")]
     output: Option<PathBuf>,
     /// The picture's size in pixels, such as 1920x1080, in place of the scene's

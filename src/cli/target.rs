@@ -86,7 +86,8 @@ fn check_within(path: &Path, folder: &Path) -> Result<(), TargetError> {
         }
         Err(error) => return Err(unwritable(error)),
     }
-    // Rights, full disks and read-only mounts are the system's to judge: a nameless file asks it and leaves nothing behind.
+    // Rights, full disks and read-only mounts are the system's to judge: a nameless file asks it and leaves nothing
+    // behind.
     tempfile::tempfile_in(folder).map_err(unwritable)?;
     Ok(())
 }

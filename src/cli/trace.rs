@@ -15,11 +15,13 @@ use crate::orbit::{EventKind, Fate, MIN_U, OrbitError, Orbits, Ray};
 
 /// Tell what happens to single rays: CSV in, CSV out
 ///
-/// Reads CSV with a header that names the columns u0 (inverse radius where the ray starts, in inverse Schwarzschild radii) and dudphi (du/dφ
-/// there, inf and -inf allowed: straight in and straight out). Other columns, blank lines and lines that begin with # are ignored.
+/// Reads CSV with a header that names the columns u0 (inverse radius where the ray starts, in inverse Schwarzschild
+/// radii) and dudphi (du/dφ there, inf and -inf allowed: straight in and straight out). Other columns, blank lines
+/// and lines that begin with # are ignored.
 ///
-/// Writes the columns u0,dudphi,event,radius,angle: for each ray, in the order they happen, its inbound and outbound crossings of each radius,
-/// then its capture (radius 1) or escape (radius inf), with the angle swept from the start, in radians.
+/// Writes the columns u0,dudphi,event,radius,angle: for each ray, in the order they happen, its inbound and outbound
+/// crossings of each radius, then its capture (radius 1) or escape (radius inf), with the angle swept from the start,
+/// in radians.
 #[derive(Debug, Args)]
 pub(super) struct TraceArgs {
     /// The CSV file, or - for the standard input [default: -]
@@ -107,7 +109,8 @@ fn trace(
     Ok(())
 }
 
-/// One row. `{:?}` is the shortest decimal that reads back to the same number; the angle has 17 significant digits, which do so too.
+/// One row. `{:?}` is the shortest decimal that reads back to the same number; the angle has 17 significant digits,
+/// which do so too.
 fn write_event(
     out: &mut impl Write,
     ray: Ray,

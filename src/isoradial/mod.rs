@@ -1,23 +1,23 @@
 //! Isoradial curves: which rays of one camera meet one radius of the disk, as a function of the orbit angle.
 //!
-//! Rays of one plane that leave one point never meet again before they have wound round the hole once more: the optical metric's Gaussian
-//! curvature `−u³(1 − 3u/4)` is negative (Gibbons & Werner 2008, *Class. Quantum Grav.* 25, 235009). At a fixed orbit angle φ,
-//! u therefore rises strictly with the ray's slope, and exactly one slope carries a ray from `u0` to `u_d` in the angle φ. With
-//! `κ = z/s` (the cotangent of the angle between the ray and the hole's direction, `du/dφ = u0 √(1 − u0) κ`), a ray
-//! that meets the disk's plane at φ meets the disk iff
+//! Rays of one plane that leave one point never meet again before they have wound round the hole once more: the
+//! optical metric's Gaussian curvature `−u³(1 − 3u/4)` is negative (Gibbons & Werner 2008, *Class. Quantum Grav.* 25,
+//! 235009). At a fixed orbit angle φ, u therefore rises strictly with the ray's slope, and exactly one slope carries
+//! a ray from `u0` to `u_d` in the angle φ. With `κ = z/s` (the cotangent of the angle between the ray and the hole's
+//! direction, `du/dφ = u0 √(1 − u0) κ`), a ray that meets the disk's plane at φ meets the disk iff
 //!
 //! ```text
 //! κ(φ; u_outer) ≤ z/s ≤ κ(φ; u_inner)
 //! ```
 //!
-//! These curves (Luminet 1979, *Astron. Astrophys.* 75, 228, section 4) depend on the camera's radius and on the disk's two radii, not on where
-//! the camera looks. What is kept of them is `h = κ − κ_c`, the distance from the critical ray, which falls as
-//! `e^{−φ}`: the photon rings keep their digits however thin they are.
+//! These curves (Luminet 1979, *Astron. Astrophys.* 75, 228, section 4) depend on the camera's radius and on the
+//! disk's two radii, not on where the camera looks. What is kept of them is `h = κ − κ_c`, the distance from the
+//! critical ray, which falls as `e^{−φ}`: the photon rings keep their digits however thin they are.
 //!
 //! # The axis
-//! The plane is met at `φ₁ + kπ`, `tan φ₁ = N/D`, `N = |n·p̂| s ≥ 0`. Each quarter turn of φ is one [piece](self) of its own: its axis is
-//! `x = N/(N + D)` while D ≥ 0 and `x = |D|/(N + |D|)` beyond π/2, one division and no trigonometry, analytic in φ within the piece. In the first
-//! piece h has a pole at φ = 0; there `x h` is kept.
+//! The plane is met at `φ₁ + kπ`, `tan φ₁ = N/D`, `N = |n·p̂| s ≥ 0`. Each quarter turn of φ is one [piece](self) of
+//! its own: its axis is `x = N/(N + D)` while D ≥ 0 and `x = |D|/(N + |D|)` beyond π/2, one division and no
+//! trigonometry, analytic in φ within the piece. In the first piece h has a pole at φ = 0; there `x h` is kept.
 
 mod nodes;
 mod range;
@@ -98,8 +98,9 @@ struct Piece {
 impl Isoradials {
     /// The curves of `sight`, from a method's swept angles.
     ///
-    /// Orders are added while the last one is thicker than a thousandth of a pixel; the curves' nodes are doubled, piece by
-    /// piece, until they are right to a tenth of the tolerance in the middle of every cell, or as right as the angles are. [`Self::error`] tells what was reached.
+    /// Orders are added while the last one is thicker than a thousandth of a pixel; the curves' nodes are doubled,
+    /// piece by piece, until they are right to a tenth of the tolerance in the middle of every cell, or as right as
+    /// the angles are. [`Self::error`] tells what was reached.
     pub fn new(sight: &Sight, angles: &impl SweptAngles) -> Self {
         let mut curves = Self {
             critical: sight.critical(),
@@ -177,8 +178,8 @@ impl Isoradials {
             .sum()
     }
 
-    /// Whether the ray with inward part `z` and transverse length `s > 0` meets the disk, where `N = |n·p̂| s` and D are the
-    /// parts of the tangent of φ₁.
+    /// Whether the ray with inward part `z` and transverse length `s > 0` meets the disk, where `N = |n·p̂| s` and D
+    /// are the parts of the tangent of φ₁.
     #[inline]
     pub fn meets(&self, z: f64, s: f64, n: f64, d: f64) -> bool {
         let excess = z - self.critical * s;
@@ -223,7 +224,8 @@ impl Piece {
             .map(|i| outer.kappa(i))
             .fold(f64::INFINITY, f64::min)
             - critical;
-        // Between the nodes a smooth curve may pass its nodes' extremes a little: by a share of the angle between them.
+        // Between the nodes a smooth curve may pass its nodes' extremes a little: by a share of the angle between
+        // them.
         let (widest, narrowest) = (angle(critical + lowest), angle(critical + highest));
         let margin = 0.01 * (widest - narrowest);
         let cotangent = |angle: f64| libm::cos(angle) / libm::sin(angle) - critical;

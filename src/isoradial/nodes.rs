@@ -26,9 +26,9 @@ pub(super) struct Nodes {
 }
 
 impl Nodes {
-    /// The curve of `target`, its nodes doubled until the error in the middle of every cell is a tenth of the tolerance: the middles
-    /// may miss the largest error, and the angles have one of their own. Once doubling no longer helps, only the latter is left, and the
-    /// curve is as good as it gets.
+    /// The curve of `target`, its nodes doubled until the error in the middle of every cell is a tenth of the
+    /// tolerance: the middles may miss the largest error, and the angles have one of their own. Once doubling no
+    /// longer helps, only the latter is left, and the curve is as good as it gets.
     pub(super) fn draw(
         target: &Target,
         quarter: Quarter,

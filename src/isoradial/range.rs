@@ -3,7 +3,8 @@
 use super::{Isoradials, Piece};
 use crate::table::spline::bounds;
 
-/// What is known of a bundle of rays: an interval for `z/s`, and one for `D/N`, the cotangent of φ₁ (see [the module above](super)).
+/// What is known of a bundle of rays: an interval for `z/s`, and one for `D/N`, the cotangent of φ₁ (see [the module
+/// above](super)).
 #[derive(Debug, Clone, Copy)]
 pub struct Bundle {
     /// Least and greatest `z/s`.
@@ -27,7 +28,8 @@ pub enum Verdict {
 const ROUNDING: f64 = 1e-13;
 
 impl Isoradials {
-    /// What the rays of `bundle` meet. [`Verdict::Hit`] and [`Verdict::Miss`] are certain: [`Self::meets`] says the same of each of its rays.
+    /// What the rays of `bundle` meet. [`Verdict::Hit`] and [`Verdict::Miss`] are certain: [`Self::meets`] says the
+    /// same of each of its rays.
     pub fn verdict(&self, bundle: &Bundle) -> Verdict {
         let (low, high) = bundle.kappa;
         let rounding = ROUNDING * (low.abs() + high.abs() + self.critical.abs());

@@ -52,9 +52,9 @@ impl Target {
         }
     }
 
-    /// Positive where the ray of `h` is closer to the hole than the radius sought when it has swept `angle`; rises with h
-    /// (see the [module above](super)), through zero where it is just there. The size is the angle that is missing. Infinite where the ray never
-    /// meets the radius.
+    /// Positive where the ray of `h` is closer to the hole than the radius sought when it has swept `angle`; rises
+    /// with h (see the [module above](super)), through zero where it is just there. The size is the angle that is
+    /// missing. Infinite where the ray never meets the radius.
     fn residual(&self, h: f64, angle: f64, angles: &impl SweptAngles) -> f64 {
         let Crossings { inbound, outbound } = angles.crossings(&self.orbit(h), self.u_disk);
         match (inbound, outbound) {
@@ -68,8 +68,8 @@ impl Target {
 
     /// The h with which a ray meets the radius at `angle`, found from a guess.
     ///
-    /// Secant steps, kept within the bracket that the residuals' signs have shown so far; bisection, or doubling the step where one end is
-    /// not known yet, wherever the secant leaves it or the residual is infinite.
+    /// Secant steps, kept within the bracket that the residuals' signs have shown so far; bisection, or doubling the
+    /// step where one end is not known yet, wherever the secant leaves it or the residual is infinite.
     pub(super) fn solve(&self, angle: f64, guess: f64, angles: &impl SweptAngles) -> f64 {
         const STEPS: usize = 200;
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -110,7 +110,8 @@ impl Target {
             let change = (next - h).abs();
             previous = residual.is_finite().then_some((h, residual));
             h = next;
-            // Where the residual bends like a root (a ray that grazes the radius) the secant's error is of the size of its step.
+            // Where the residual bends like a root (a ray that grazes the radius) the secant's error is of the size
+            // of its step.
             let bracketed = high - low <= 4.0 * f64::EPSILON * h.abs();
             if (secant == Some(next) && change <= 1e-13 * h.abs()) || bracketed {
                 return h;

@@ -1,8 +1,8 @@
 //! Swept angles as elliptic integrals of the first kind: exact but for rounding, for every ray.
 //!
-//! `φ = ∫ du/√P`, `P(u) = u³ − u² + e² = (u − u1)(u − u2)(u − u3)`. The roots come from one angle η, so that neither a
-//! near-critical ray (u2 ≈ u3) nor a far one (u1 ≈ u2 ≈ 0) subtracts nearly equal numbers. The forms used here stay within
-//! `1e-12 + 16 ε·condition` of the truth for every ray outside the horizon.
+//! `φ = ∫ du/√P`, `P(u) = u³ − u² + e² = (u − u1)(u − u2)(u − u3)`. The roots come from one angle η, so that neither
+//! a near-critical ray (u2 ≈ u3) nor a far one (u1 ≈ u2 ≈ 0) subtracts nearly equal numbers. The forms used here stay
+//! within `1e-12 + 16 ε·condition` of the truth for every ray outside the horizon.
 
 use super::carlson::rf;
 use super::invariants::{CRITICAL_E2, Family, Orbit, Point, three_u_minus_two};
@@ -54,9 +54,9 @@ pub(crate) struct RealRoots {
 }
 
 impl RealRoots {
-    /// With `cos 3η = 27e²/2 − 1`, η ∈ (0, π/3], ζ = π/3 − η: `u3 − u2 = (2/√3) sin η`, `u2 − u1 = (2/√3) sin ζ`,
-    /// `u1 = 1/3 − (2/3) cos η` (Viète's trigonometric solution, DLMF 1.11.32-33). Whichever of η and ζ is small is computed from the small one
-    /// of `−Δ` and `e²`, and the other from it.
+    /// With `cos 3η = 27e²/2 − 1`, η ∈ (0, π/3], ζ = π/3 − η: `u3 − u2 = (2/√3) sin η`, `u2 − u1 = (2/√3) sin ζ`, `u1
+    /// = 1/3 − (2/3) cos η` (Viète's trigonometric solution, DLMF 1.11.32-33). Whichever of η and ζ is small is
+    /// computed from the small one of `−Δ` and `e²`, and the other from it.
     pub(crate) fn new(e2: f64, delta: f64) -> Self {
         const THIRD_OF_PI: f64 = core::f64::consts::FRAC_PI_3;
         let near_critical = -delta < 0.5 * CRITICAL_E2;
@@ -128,7 +128,8 @@ impl RealRoots {
     }
 }
 
-/// `∫ du/√P` between two inverse radii where `e² > 4/27`: `P = (u − u1)((u − p)² + q²)`, and no root between the limits.
+/// `∫ du/√P` between two inverse radii where `e² > 4/27`: `P = (u − u1)((u − p)² + q²)`, and no root between the
+/// limits.
 ///
 /// With `cosh 3η = 1 + 27Δ/2`: `u1 = 1/3 − (2/3) cosh η`, `p = (1 − u1)/2`, `q = sinh η/√3`, `c = p − u1 = cosh η`
 /// (the cubic's one real root, DLMF 1.11.34). Then, with both quadratics of DLMF 19.29.19–33 at hand (`Q1 = u − u1`,
@@ -151,7 +152,8 @@ pub(crate) fn without_turning_point(e2: f64, delta: f64, from: f64, to: f64) -> 
     let (px, py) = (from_p(x), from_p(y));
     let (rx, ry) = ((px * px + q * q).sqrt(), (py * py + q * q).sqrt());
     let root = (x + minus_u1).sqrt() + (y + minus_u1).sqrt();
-    // √Q2(x) + √Q2(y) − (x − y) = (√Q2(x) − (x − p)) + (√Q2(y) + (y − p)), each by its conjugate where it would subtract.
+    // √Q2(x) + √Q2(y) − (x − y) = (√Q2(x) − (x − p)) + (√Q2(y) + (y − p)), each by its conjugate where it would
+    // subtract.
     let above = if px > 0.0 { q * q / (rx + px) } else { rx - px };
     let below = if py < 0.0 { q * q / (ry - py) } else { ry + py };
     let excess = above + below;

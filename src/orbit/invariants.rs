@@ -74,8 +74,8 @@ impl Orbit {
         }
     }
 
-    /// The orbit's point at inverse radius `u`, if the orbit reaches it (before or after its turning point; a radius that it only touches is
-    /// not reached).
+    /// The orbit's point at inverse radius `u`, if the orbit reaches it (before or after its turning point; a radius
+    /// that it only touches is not reached).
     ///
     /// `u̇² = u̇0² + (u0 − u)(u0 + u − u0² − u0 u − u²)`: the start's slope and a difference that is exact for
     /// neighbouring radii. About the photon sphere the second factor vanishes too; with `x = u − 2/3` it is
@@ -89,8 +89,8 @@ impl Orbit {
             u0 + u - u0 * u0 - u0 * u - u * u
         };
         let slope2 = self.start.slope * self.start.slope;
-        // Where u̇² is small against the start's, which is nearer to the photon sphere, a difference from the start's keeps few digits, and
-        // s² + Δ all of them.
+        // Where u̇² is small against the start's, which is nearer to the photon sphere, a difference from the start's
+        // keeps few digits, and s² + Δ all of them.
         let s = critical_slope(u);
         let squared = if s * s + self.delta.abs() < slope2 {
             s * s + self.delta
@@ -121,8 +121,8 @@ impl Orbit {
     }
 }
 
-/// `3u − 2`, for u ≥ ½ rounded once: there both summands of `(2u − 1) + (u − 1)` are exact. (Below, where nothing cancels, they are rounded
-/// to half an ε each.) Never zero, since 2/3 is no floating-point number.
+/// `3u − 2`, for u ≥ ½ rounded once: there both summands of `(2u − 1) + (u − 1)` are exact. (Below, where nothing
+/// cancels, they are rounded to half an ε each.) Never zero, since 2/3 is no floating-point number.
 #[inline]
 pub(crate) fn three_u_minus_two(u: f64) -> f64 {
     (2.0 * u - 1.0) + (u - 1.0)
@@ -144,8 +144,8 @@ fn distance_from_critical(u: f64, slope: f64) -> f64 {
     if slope.is_infinite() {
         return f64::INFINITY;
     }
-    // s carries at most 3 roundings; 16 ε leaves the plain form at least two digits of the difference's sign, and its error
-    // below the 16 ε·condition of the ray itself.
+    // s carries at most 3 roundings; 16 ε leaves the plain form at least two digits of the difference's sign, and its
+    // error below the 16 ε·condition of the ray itself.
     if difference.abs() > 16.0 * f64::EPSILON * s {
         return difference * (slope + s);
     }

@@ -121,8 +121,8 @@ pub enum OrbitError {
 
 /// A way to find out what happens to a ray.
 pub trait Orbits: Sync {
-    /// All events of `ray` in the order they happen: the crossings of each of `radii` (Schwarzschild radii, finite, above 1;
-    /// a radius given twice counts once), then its end. The start itself is no crossing.
+    /// All events of `ray` in the order they happen: the crossings of each of `radii` (Schwarzschild radii, finite,
+    /// above 1; a radius given twice counts once), then its end. The start itself is no crossing.
     ///
     /// # Errors
     /// [`OrbitError::Radius`] for a radius that cannot be watched, [`OrbitError::StepLimit`] where a stepped method gives up.

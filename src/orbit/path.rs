@@ -8,7 +8,8 @@ pub trait SweptAngles: Sync {
     /// The angle swept from `from` to `to` on a stretch without a turning point, `∫ du/|du/dφ|` between them; ≥ 0.
     fn direct(&self, orbit: &Orbit, from: Point, to: Point) -> f64;
 
-    /// The angle swept from `from` over the orbit's turning point (periapsis or apoapsis) to `to`. Only for orbits that have one.
+    /// The angle swept from `from` over the orbit's turning point (periapsis or apoapsis) to `to`. Only for orbits
+    /// that have one.
     fn around(&self, orbit: &Orbit, from: Point, to: Point) -> f64;
 
     /// The angle from the start of `orbit` to its end.
@@ -32,7 +33,8 @@ pub trait SweptAngles: Sync {
             u < start.u
         };
         let first = beyond.then(|| self.direct(orbit, start, point));
-        // What lies on the way to the turning point is crossed again after it, and so is all that lies behind the start.
+        // What lies on the way to the turning point is crossed again after it, and so is all that lies behind the
+        // start.
         let second = turns(orbit).then(|| self.around(orbit, start, point));
         if orbit.inward {
             Crossings {
@@ -85,8 +87,8 @@ impl<T: SweptAngles> Orbits for T {
             inbound.extend(crossings.inbound.map(event(EventKind::Inbound)));
             outbound.extend(crossings.outbound.map(event(EventKind::Outbound)));
         }
-        // Watched radii come in ascending u: the order of inbound crossings, the reverse of outbound ones. A trapped ray goes
-        // out first and in afterwards, every other ray in first.
+        // Watched radii come in ascending u: the order of inbound crossings, the reverse of outbound ones. A trapped
+        // ray goes out first and in afterwards, every other ray in first.
         outbound.reverse();
         let (mut events, rest) = match orbit.family {
             Family::Trapped => (outbound, inbound),

@@ -37,7 +37,8 @@ const SMALLEST: usize = 4;
 
 /// The frame's pixels, row by row from the top, on all threads of the current rayon pool.
 ///
-/// Tiles whose rays all meet the same are filled at once; the others are split, down to single pixels along the disk's edges.
+/// Tiles whose rays all meet the same are filled at once; the others are split, down to single pixels along the
+/// disk's edges.
 pub fn render(view: &View, curves: &Isoradials) -> Vec<u8> {
     let frame = Frame::new(view, curves);
     let width = view.width() as usize;
@@ -98,7 +99,8 @@ struct Frame<'a> {
     curves: &'a Isoradials,
     /// `|n·p̂|`.
     n_p: f64,
-    /// `D = n_a t_a`: with n or its opposite for the disk's normal the plane is the same; of the two the one away from the camera has N ≥ 0.
+    /// `D = n_a t_a`: with n or its opposite for the disk's normal the plane is the same; of the two the one away
+    /// from the camera has N ≥ 0.
     n_a: f64,
 }
 
@@ -117,7 +119,8 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Fills a tile of side `side` or less; `rows` are those of its band, which begins at row `first_row` of the frame.
+    /// Fills a tile of side `side` or less; `rows` are those of its band, which begins at row `first_row` of the
+    /// frame.
     fn fill(&self, rows: &mut [u8], first_row: usize, tile: Tile, side: usize) {
         let verdict = self
             .bundle(first_row, tile)
@@ -181,8 +184,8 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Bounds of a tile's rays, from the ray at its centre and the circle about it that the tile lies in; none where the tile may
-    /// hold the ray straight at the hole or straight away from it.
+    /// Bounds of a tile's rays, from the ray at its centre and the circle about it that the tile lies in; none where
+    /// the tile may hold the ray straight at the hole or straight away from it.
     fn bundle(&self, first_row: usize, tile: Tile) -> Option<Bundle> {
         let (z, ta, tb) = (self.view.z(), self.view.ta(), self.view.tb());
         let (left, top) = (

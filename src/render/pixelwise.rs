@@ -8,7 +8,8 @@ use super::mask::WHITE;
 use crate::orbit::{Event, EventKind, OrbitError, Orbits, Ray};
 use crate::scene::{Disk, Scene, View};
 
-/// The frame's pixels, row by row from the top, on all threads of the current rayon pool. `row_done` is called after each row.
+/// The frame's pixels, row by row from the top, on all threads of the current rayon pool. `row_done` is called after
+/// each row.
 ///
 /// # Errors
 /// What the method returns for the first row that has a ray it cannot follow.
@@ -43,8 +44,8 @@ pub fn render(
     Ok(pixels)
 }
 
-/// Whether a ray from `radius` with these events (crossings of the disk's two radii, and the end) is between the two radii
-/// at one of the angles `first + kπ`; at 0 the ray starts in the plane, which is no crossing.
+/// Whether a ray from `radius` with these events (crossings of the disk's two radii, and the end) is between the two
+/// radii at one of the angles `first + kπ`; at 0 the ray starts in the plane, which is no crossing.
 fn meets(events: &[Event], radius: f64, first: f64, disk: &Disk) -> bool {
     let crosses_within = |from: f64, to: f64| {
         let least = if first > 0.0 { 0.0 } else { 1.0 };

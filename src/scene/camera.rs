@@ -4,11 +4,11 @@
 //!
 //! The camera stands at P, `r = |P|`, `p̂ = P/r`, looks at F and is a static observer. With `V = F − P`, `L = |V|`:
 //! `f = V/L`, `right = f × up` normalised, `true_up = right × f`. The picture's point (X, Y) is seen in the direction
-//! `d = f + right X + true_up Y`. Of a direction only its inward part `z = −d·p̂` and its part across p̂, `t = d + z p̂`,
-//! are needed: the ray moves in the plane of p̂ and t, and starts with `du/dφ = u0 √(1 − u0) z/s`, `s = |t|`.
+//! `d = f + right X + true_up Y`. Of a direction only its inward part `z = −d·p̂` and its part across p̂, `t = d + z
+//! p̂`, are needed: the ray moves in the plane of p̂ and t, and starts with `du/dφ = u0 √(1 − u0) z/s`, `s = |t|`.
 //!
-//! t is given in a basis (â, b̂) of the plane across p̂ that the disk's unit normal n chooses: â along n's part across
-//! p̂, `b̂ = p̂ × â`. So `n·b̂ = 0` and `n·t = (n·â) t_a`; z, `t_a` and `t_b` are affine in (X, Y).
+//! t is given in a basis (â, b̂) of the plane across p̂ that the disk's unit normal n chooses: â along n's part
+//! across p̂, `b̂ = p̂ × â`. So `n·b̂ = 0` and `n·t = (n·â) t_a`; z, `t_a` and `t_b` are affine in (X, Y).
 //!
 //! # Precision
 //!
@@ -24,8 +24,9 @@ use glam::DVec3;
 use super::Scene;
 use super::vector::{cosine, direction, norm, scaled, unit_cross};
 
-/// Where `|n × p̂|` is no more than this, n and p̂ are parallel: what is left is the rounding of the cross product and
-/// of the norms, and would give â no direction. Taking `n·â` for 0 there changes an angle φ₁ by no more than this.
+/// Where `|n × p̂|` is no more than this, n and p̂ are parallel: what is left is the rounding of the cross product
+/// and of the norms, and would give â no direction. Taking `n·â` for 0 there changes an angle φ₁ by no more than
+/// this.
 const PARALLEL: f64 = 4.0 * f64::EPSILON;
 
 /// A quantity that is affine in a picture's coordinates: `at_centre + per_x X + per_y Y`.
@@ -120,7 +121,8 @@ impl View {
             // The second cross product makes â ⟂ p̂ to the last digit, which p̂ × n, a difference, is not to it.
             (sine, direction(p_cross_n.cross(p)))
         } else if true_up_p.abs() <= right_p.abs() {
-            // Any direction across p̂ will do; of these two the one farther from p̂ has a part across of at least 1/√2.
+            // Any direction across p̂ will do; of these two the one farther from p̂ has a part across of at least
+            // 1/√2.
             (0.0, direction(true_up - p * true_up_p))
         } else {
             (0.0, direction(right - p * right_p))
@@ -229,7 +231,8 @@ impl View {
         self.ray_at(self.x_at(f64::from(i) + 0.5), self.y_at(f64::from(j) + 0.5))
     }
 
-    /// `du/dφ = u0 √(1 − u0) z/s` where the ray starts, positive inward; ±∞ for a ray straight at or away from the hole.
+    /// `du/dφ = u0 √(1 − u0) z/s` where the ray starts, positive inward; ±∞ for a ray straight at or away from the
+    /// hole.
     pub fn dudphi(&self, ray: PixelRay) -> f64 {
         self.slope_scale * ray.z / ray.transverse()
     }
@@ -237,9 +240,10 @@ impl View {
     /// The orbit angle φ₁ in [0, π) at which a ray with transverse part `ta` along â and length `s` first meets the
     /// disk's plane, `tan φ₁ = −(n·p̂)/(n·t̂)`, `n·t̂ = n_a ta/s`. It meets the plane at `φ₁ + kπ`, `k = 0, 1, 2 …`.
     ///
-    /// The camera itself is no crossing: only positive angles count. So where this is 0, the crossings are at `kπ`,
-    /// k ≥ 1. That is where `n·p̂ = 0`, also for the ray that stays in the disk's plane (`ta = 0`: the limit, like its
-    /// neighbours), and where φ₁ is π to the last digit. For s = 0 there is no orbital plane and the value means nothing.
+    /// The camera itself is no crossing: only positive angles count. So where this is 0, the crossings are at `kπ`, k
+    /// ≥ 1. That is where `n·p̂ = 0`, also for the ray that stays in the disk's plane (`ta = 0`: the limit, like its
+    /// neighbours), and where φ₁ is π to the last digit. For s = 0 there is no orbital plane and the value means
+    /// nothing.
     pub fn plane_crossing(&self, ta: f64, s: f64) -> f64 {
         if self.n_p == 0.0 {
             return 0.0;

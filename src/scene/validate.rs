@@ -9,7 +9,8 @@ use super::{Camera, Disk, ImageSize, Scene, SceneError};
 /// The horizon's radius, in Schwarzschild radii: a camera stands strictly outside.
 pub const HORIZON_RADIUS: f64 = 1.0;
 
-/// The radius of the innermost stable circular orbit (6GM/c²), in Schwarzschild radii: the least inner edge of a disk.
+/// The radius of the innermost stable circular orbit (6GM/c²), in Schwarzschild radii: the least inner edge of a
+/// disk.
 pub const ISCO_RADIUS: f64 = 3.0;
 
 /// The farthest a camera may stand, in Schwarzschild radii: there two points of double precision are 1/8 apart.
@@ -21,8 +22,9 @@ pub const MAX_IMAGE_SIDE: i64 = 1_000_000;
 /// The most pixels of a picture, 2³¹.
 pub const MAX_PIXELS: i64 = 1 << 31;
 
-/// A camera is in the disk's plane where |n·p̂| is no more than this: the cosine of the given components is rounded by
-/// less (three products, two sums, a product of two lengths and a quotient, each by at most ε/2 of a term below 1).
+/// A camera is in the disk's plane where |n·p̂| is no more than this: the cosine of the given components is rounded
+/// by less (three products, two sums, a product of two lengths and a quotient, each by at most ε/2 of a term below
+/// 1).
 const IN_PLANE: f64 = 4.0 * f64::EPSILON;
 
 /// A focus nearer to the camera than this share of the camera's radius is the camera's own place: the position itself

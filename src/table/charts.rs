@@ -1,8 +1,8 @@
 //! The four charts of the phase plane, and the smooth function that each of them stores.
 //!
-//! A swept angle is `∫ du/√P`, `P = u³ − u² + e² = (du/dφ)²`. Of one function of `(u0, du/dφ)` it is singular on the critical
-//! line `e² = 4/27`, at every turning point and at both ends of e. Each chart takes out in closed form what is
-//! singular in its part of the plane; what is left is analytic well beyond the chart's borders.
+//! A swept angle is `∫ du/√P`, `P = u³ − u² + e² = (du/dφ)²`. Of one function of `(u0, du/dφ)` it is singular on the
+//! critical line `e² = 4/27`, at every turning point and at both ends of e. Each chart takes out in closed form what
+//! is singular in its part of the plane; what is left is analytic well beyond the chart's borders.
 //!
 //! | chart | where | axes | stored | swept angle |
 //! |---|---|---|---|---|
@@ -11,26 +11,28 @@
 //! | trapped | 27e²/4 < 0.64, u > 2/3 | u, t | Z(u, t) | to the apoapsis: \|u̇\|/(u − 0.39) Z |
 //! | radial | 27e²/4 > 3 | u, 1/e² | H(u, 1/e²) | difference of two H, over e |
 //!
-//! `Δ = e² − 4/27`, `e_c² = 4/27`. The borders were chosen by measuring where the charts on both sides need equally many nodes.
+//! `Δ = e² − 4/27`, `e_c² = 4/27`. The borders were chosen by measuring where the charts on both sides need equally
+//! many nodes.
 //!
 //! # Derivation
 //! *Critical.* With `s = |u − 2/3| √(u + 1/3)` and its signed form `σ`, `P = σ² + Δ`. Near the photon sphere the
-//! integrand is an analytic function of σ over `√(σ² + Δ)`, so that term by term
-//! `∫ du/√P = A asinh(σ/√Δ) + √P B/γ²`, with A and B analytic in Δ through zero: **the critical line is no singularity
-//! of either**. (For Δ < 0 read `± acosh(|σ|/√−Δ)`; both are `± ln((s + |u̇|)/√|Δ|)`.) B/γ² has its nearest singularity at the
-//! root u1 ≈ −1/3, a pole in γ near γ = 0; the factor γ² takes the most of it out. As functions of e both are singular at e = 0 only.
+//! integrand is an analytic function of σ over `√(σ² + Δ)`, so that term by term `∫ du/√P = A asinh(σ/√Δ) + √P B/γ²`,
+//! with A and B analytic in Δ through zero: **the critical line is no singularity of either**. (For Δ < 0 read `±
+//! acosh(|σ|/√−Δ)`; both are `± ln((s + |u̇|)/√|Δ|)`.) B/γ² has its nearest singularity at the root u1 ≈ −1/3, a pole
+//! in γ near γ = 0; the factor γ² takes the most of it out. As functions of e both are singular at e = 0 only.
 //!
-//! B itself comes from a power series. With the cubic's lone root u1, p the mean of the other two, `c = p − u1`, `y = (u − p)/c`,
-//! `m = (1 − c⁻²)/3`: `√c ∫ du/√P = ∫ dy/(√(1 + y) √(y² + m)) = A₁ asinh(y/√m) + √(y² + m) Σ bₙ yⁿ`. Differentiated, with
-//! `aₙ = binom(−½, n)`: `n bₙ₋₁ + m (n + 1) bₙ₊₁ = aₙ` and `A₁ = 1 − m b₁`; solved downwards from n = 140, where the recurrence is stable. So
-//! `A = A₁/√c`, and with the difference of the two logarithms, `asinh(|u̇| ν)`,
-//! `B = γ² (Σ bₙ yⁿ / (c √(c (u − u1))) + A asinh(|u̇| ν)/|u̇|)`, where, with `x = u − 2/3`, `d = c − 1`,
-//! `ν = 9 (2x/(3(√(u − u1) + γ)) − √(u − u1)/3) / (√(u − u1) (3 + 2d) √(2(2 + d)))`: no term of it is small or large anywhere near the
-//! critical line, where the orbit's own logarithm is infinite.
+//! B itself comes from a power series. With the cubic's lone root u1, p the mean of the other two, `c = p − u1`, `y =
+//! (u − p)/c`, `m = (1 − c⁻²)/3`: `√c ∫ du/√P = ∫ dy/(√(1 + y) √(y² + m)) = A₁ asinh(y/√m) + √(y² + m) Σ bₙ yⁿ`.
+//! Differentiated, with `aₙ = binom(−½, n)`: `n bₙ₋₁ + m (n + 1) bₙ₊₁ = aₙ` and `A₁ = 1 − m b₁`; solved downwards
+//! from n = 140, where the recurrence is stable. So `A = A₁/√c`, and with the difference of the two logarithms,
+//! `asinh(|u̇| ν)`, `B = γ² (Σ bₙ yⁿ / (c √(c (u − u1))) + A asinh(|u̇| ν)/|u̇|)`, where, with `x = u − 2/3`, `d = c
+//! − 1`, `ν = 9 (2x/(3(√(u − u1) + γ)) − √(u − u1)/3) / (√(u − u1) (3 + 2d) √(2(2 + d)))`: no term of it is small or
+//! large anywhere near the critical line, where the orbit's own logarithm is infinite.
 //!
 //! *Weak* and *trapped*: the angle to the turning point is odd in u̇ and analytic in u̇², so over u̇ it is analytic in u, beyond the turning
-//! point too; its next singularity is the other turning point, for small e the mirrored one at v = −1, where a factor 1 + v makes a root of a
-//! pole; u − 0.39 does so for the trapped rays, whose next singularity is the periapsis at u2 < 0.3963. In flat space `V = acos v √((1 + v)/(1 − v))`.
+//! point too; its next singularity is the other turning point, for small e the mirrored one at v = −1, where a factor
+//! 1 + v makes a root of a pole; u − 0.39 does so for the trapped rays, whose next singularity is the periapsis at u2
+//! < 0.3963. In flat space `V = acos v √((1 + v)/(1 − v))`.
 //!
 //! *Radial*: `H = ∫₀ᵘ du/√(1 − u²(1 − u)/e²)` is analytic in u and 1/e², and gives short angles with small absolute error.
 
@@ -124,8 +126,9 @@ impl CriticalRow {
 
     /// `(asinh(y/√m) − asinh(σ/√Δ)) / |u̇|`.
     ///
-    /// The hyperbolic sine of the numerator is `|u̇| ν`, `ν = (y − σ√((y² + m)/P))/√(mΔ)`. With `x = u − 2/3`, `d = c − 1`:
-    /// `mΔ = d² · 2(2 + d)(3 + 2d)²/(81c²)` and `y − … = d (2x/3/(√(u − u1) + √(u + 1/3)) − √(u − u1)/3)/(c√(u − u1))`: the d cancels.
+    /// The hyperbolic sine of the numerator is `|u̇| ν`, `ν = (y − σ√((y² + m)/P))/√(mΔ)`. With `x = u − 2/3`, `d = c
+    /// − 1`: `mΔ = d² · 2(2 + d)(3 + 2d)²/(81c²)` and `y − … = d (2x/3/(√(u − u1) + √(u + 1/3)) − √(u − u1)/3)/(c√(u
+    /// − u1))`: the d cancels.
     fn log_difference(&self, x: f64, from_u1: f64, slope2: f64) -> f64 {
         let root = from_u1.sqrt();
         let numerator = 2.0 / 3.0 * x / (root + (1.0 + x).sqrt()) - root / 3.0;
@@ -146,7 +149,8 @@ fn asinh_over(z: f64) -> f64 {
     }
 }
 
-/// `e` on the weak and the trapped charts' axis, `t = √(1 − e/e_c)`: the root draws the critical line, where both are singular, away from them.
+/// `e` on the weak and the trapped charts' axis, `t = √(1 − e/e_c)`: the root draws the critical line, where both are
+/// singular, away from them.
 fn slope_at_infinity(t: f64) -> f64 {
     (1.0 - t) * (1.0 + t) * CRITICAL_E2.sqrt()
 }

@@ -98,8 +98,9 @@ pub fn open(path: &Path) -> Result<Table<Mmap>, TableError> {
         // An empty file cannot be mapped on every system.
         return Err(unusable(FormatError::Foreign));
     }
-    // SAFETY: the map is read-only and private to this process, and lives as long as the table over it. The contract is that nobody changes
-    // the file's bytes in place meanwhile; this program replaces tables by renaming, which leaves a mapped file as it was.
+    // SAFETY: the map is read-only and private to this process, and lives as long as the table over it. The contract
+    // is that nobody changes the file's bytes in place meanwhile; this program replaces tables by renaming, which
+    // leaves a mapped file as it was.
     #[allow(unsafe_code)]
     let map = unsafe { Mmap::map(&file) }.map_err(unreadable)?;
     Table::from_bytes(map).map_err(unusable)

@@ -25,8 +25,8 @@
 //!           └──────────────────────────────────────────────┘  (and one more at either end)
 //! ```
 //!
-//! Every byte is covered by a checksum, a comparison or the check for zero. The bytes depend on the specification and on the format's
-//! version alone.
+//! Every byte is covered by a checksum, a comparison or the check for zero. The bytes depend on the specification and
+//! on the format's version alone.
 
 use serde::{Deserialize, Serialize};
 
@@ -156,7 +156,8 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Layout, FormatError> {
     }
     let found = u32_at(bytes, VERSION_AT);
     if crc32fast::hash(&bytes[..PREAMBLE_CRC_AT]) != u32_at(bytes, PREAMBLE_CRC_AT) {
-        // Another version may lay out its preamble in another way: a foreign version explains the mismatch as well as damage does.
+        // Another version may lay out its preamble in another way: a foreign version explains the mismatch as well as
+        // damage does.
         return Err(if found == VERSION {
             damaged("the checksum of its preamble does not match")
         } else {

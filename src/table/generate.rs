@@ -92,8 +92,8 @@ fn rows(spec: &Spec) -> u64 {
         .sum()
 }
 
-/// One chart's coefficients. `row` makes, of a node on the orbit's axis, the stored function of the place. Each node's value depends on that
-/// node alone, so the threads' number and order change nothing.
+/// One chart's coefficients. `row` makes, of a node on the orbit's axis, the stored function of the place. Each
+/// node's value depends on that node alone, so the threads' number and order change nothing.
 fn chart<F: Fn(f64) -> f64>(
     axes: Axes,
     row_done: &(dyn Fn() + Sync),

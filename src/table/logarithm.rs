@@ -1,12 +1,14 @@
 //! The logarithm of a ratio, at the cost of one division.
 
-/// `ln(a/b)` for positive, normal a and b: `k ln 2 + 2 artanh(σ)`, `σ = (a − 2ᵏb)/(a + 2ᵏb)`, with the k that brings `a/(2ᵏb)` between √½ and √2, so that
-/// `|σ| ≤ 0.1716` (DLMF 4.6.4, 4.37.24). Error below 2 ε of the larger of 1 and the result.
+/// `ln(a/b)` for positive, normal a and b: `k ln 2 + 2 artanh(σ)`, `σ = (a − 2ᵏb)/(a + 2ᵏb)`, with the k that brings
+/// `a/(2ᵏb)` between √½ and √2, so that `|σ| ≤ 0.1716` (DLMF 4.6.4, 4.37.24). Error below 2 ε of the larger of 1 and
+/// the result.
 ///
 /// b = 0 counts as the smallest normal number.
 #[inline(always)]
 pub(crate) fn ln_ratio(a: f64, b: f64) -> f64 {
-    // artanh σ / σ = 1 + z(1/3 + z/5 + z²/7 + …), z = σ² ≤ 0.02944: the bracket's best polynomial of degree 6 there, off by
+    // artanh σ / σ = 1 + z(1/3 + z/5 + z²/7 + …), z = σ² ≤ 0.02944: the bracket's best polynomial of degree 6 there,
+    // off by
     // 1.6e-16, times z below 5e-18.
     const C: [f64; 7] = [
         0.333_333_333_333_333_5,

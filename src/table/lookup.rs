@@ -10,8 +10,8 @@ use wide::f64x2;
 
 /// A table's numbers, ready for lookups: a method like any other (see [`crate::orbit`]).
 ///
-/// A swept angle takes one or two square roots, at most one logarithm (about the critical line only), a division and two
-/// bicubic interpolations.
+/// A swept angle takes one or two square roots, at most one logarithm (about the critical line only), a division and
+/// two bicubic interpolations.
 #[derive(Debug, Clone, Copy)]
 pub struct Lookup<'a> {
     /// A, on the critical chart's orbit axis.

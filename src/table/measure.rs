@@ -31,11 +31,12 @@ struct Row {
     places: (f64, f64),
 }
 
-/// The largest error of `lookup` (a table made after `spec`): chart by chart, for the middle of every cell of the orbit axis, rays whose
-/// starts and radii are spread evenly over the chart's places, each followed to its end and to its radius.
+/// The largest error of `lookup` (a table made after `spec`): chart by chart, for the middle of every cell of the
+/// orbit axis, rays whose starts and radii are spread evenly over the chart's places, each followed to its end and to
+/// its radius.
 ///
-/// Both methods are given the same orbit, so that what is compared is the interpolation alone. The result depends on nothing else, thread
-/// count included.
+/// Both methods are given the same orbit, so that what is compared is the interpolation alone. The result depends on
+/// nothing else, thread count included.
 pub fn measure(spec: &Spec, lookup: &Lookup<'_>) -> Measured {
     let middles =
         |axis: Axis| (1..axis.nodes).map(move |i| 0.5 * (axis.node(i - 1) + axis.node(i)));
@@ -70,8 +71,8 @@ fn apoapsis(e: f64) -> f64 {
     (1.0 - e * e / (TRAPPED_U * TRAPPED_U)).max(TRAPPED_U)
 }
 
-/// The rays of one `e`: starts and radii from the additive sequence of the plastic number's powers, which fills the square evenly
-/// (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
+/// The rays of one `e`: starts and radii from the additive sequence of the plastic number's powers, which fills the
+/// square evenly (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
 fn along_orbit(row: Row, lookup: &Lookup<'_>) -> Measured {
     let Row {
         e,

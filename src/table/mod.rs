@@ -1,7 +1,8 @@
 //! The table: every ray's swept angles, solved once over a dense grid and read from a mapped file ever after.
 //!
-//! No disk and no camera is in it: it answers the same question as every other method (see [`crate::orbit`]), for all rays outside
-//! the horizon. [`charts`] says what is stored and why that is smooth, [`mod@format`] draws the file; between the nodes run cubic splines.
+//! No disk and no camera is in it: it answers the same question as every other method (see [`crate::orbit`]), for all
+//! rays outside the horizon. [`charts`] says what is stored and why that is smooth, [`mod@format`] draws the file;
+//! between the nodes run cubic splines.
 
 #[cfg(target_endian = "big")]
 compile_error!(
@@ -45,8 +46,8 @@ impl AsRef<[u8]> for Memory {
     }
 }
 
-/// Bytes that stay where they are in memory while their owner moves, so that numbers aligned once stay aligned. An array within its owner
-/// is none.
+/// Bytes that stay where they are in memory while their owner moves, so that numbers aligned once stay aligned. An
+/// array within its owner is none.
 pub trait FixedBytes: AsRef<[u8]> {}
 
 impl FixedBytes for memmap2::Mmap {}

@@ -5,14 +5,15 @@ use serde::{Deserialize, Serialize};
 use super::charts;
 use super::spline::Axis;
 
-/// A table's specification. The three that come with the program stand in `tables/*.toml`; a table's bytes depend on its specification and
-/// on the format's version alone.
+/// A table's specification. The three that come with the program stand in `tables/*.toml`; a table's bytes depend on
+/// its specification and on the format's version alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Spec {
     /// `draft`, `standard` or `fine`.
     pub name: String,
-    /// The largest error of a swept angle that the table promises, in radians, beyond what rounding of the ray's start does.
+    /// The largest error of a swept angle that the table promises, in radians, beyond what rounding of the ray's
+    /// start does.
     pub tolerance: f64,
     /// Nodes of `B(γ, e)`, and along e of the logarithm's factor `A(e)`: about the critical line.
     pub critical: Nodes,

@@ -73,8 +73,8 @@ impl Scale {
         }
     }
 
-    /// The coefficients about `x` and the uniform cubic B-spline's weights. Beyond its ends the axis continues with its
-    /// outermost cubic.
+    /// The coefficients about `x` and the uniform cubic B-spline's weights. Beyond its ends the axis continues with
+    /// its outermost cubic.
     #[inline(always)]
     pub(crate) fn stencil(self, x: f64) -> Stencil {
         let t = (x - self.start) * self.per_unit;
@@ -118,8 +118,8 @@ impl Scale {
     fn cell(self, t: f64) -> i32 {
         /// 1.5 · 2⁵²: a sum with it is rounded to an integer, which stands in its lowest bits.
         const ROUNDER: f64 = 6_755_399_441_055_744.0;
-        // Rounding t − ½ gives the cell; a node belongs to the one or the other of its cells, whose cubics agree there. Whatever the
-        // bits hold for a t that is no number of a cell, the index stays within the axis.
+        // Rounding t − ½ gives the cell; a node belongs to the one or the other of its cells, whose cubics agree
+        // there. Whatever the bits hold for a t that is no number of a cell, the index stays within the axis.
         ((t - 0.5 + ROUNDER).to_bits() as i32)
             .max(0)
             .min(self.last_cell)
@@ -134,8 +134,8 @@ pub(crate) fn value(coefficients: &[f64], stencil: &Stencil) -> f64 {
     (w[0] * c[0] + w[1] * c[1]) + (w[2] * c[2] + w[3] * c[3])
 }
 
-/// Bounds of a spline of one variable between two places, t cells apart: its values there, and `max|s″| t²/8` beyond them
-/// (the error of the chord). s″ is piecewise linear between the coefficients' second differences.
+/// Bounds of a spline of one variable between two places, t cells apart: its values there, and `max|s″| t²/8` beyond
+/// them (the error of the chord). s″ is piecewise linear between the coefficients' second differences.
 pub(crate) fn bounds(coefficients: &[f64], axis: Scale, x: (f64, f64)) -> (f64, f64) {
     let (first, last) = (axis.stencil(x.0), axis.stencil(x.1));
     let ends = (value(coefficients, &first), value(coefficients, &last));
@@ -150,7 +150,8 @@ pub(crate) fn bounds(coefficients: &[f64], axis: Scale, x: (f64, f64)) -> (f64, 
     (ends.0.min(ends.1) - margin, ends.0.max(ends.1) + margin)
 }
 
-/// The values at two places of a spline of two variables, stored row by row: `rows` along the slow axis, `columns` along the fast one.
+/// The values at two places of a spline of two variables, stored row by row: `rows` along the slow axis, `columns`
+/// along the fast one.
 #[inline(always)]
 pub(crate) fn values_2d(
     coefficients: &[f64],
@@ -193,13 +194,14 @@ fn across_rows(
     [low.to_array(), high.to_array()]
 }
 
-/// The B-spline coefficients of the spline through `values`, one per node, over 6; `values.len() + 2` of them. (The weights of
+/// The B-spline coefficients of the spline through `values`, one per node, over 6; `values.len() + 2` of them. (The
+/// weights of
 /// [`Scale::stencil`] are six times the B-spline's: it saves each lookup the division.)
 ///
-/// Nodes: `f_i = c_i + δ²c_i/6`, one tridiagonal system, diagonally dominant, solved by elimination. Ends: turned round, that is
-/// `c = f − δ²f/6 + δ⁴f/36 − …`, taken at the second node with δ⁴f continued linearly from the next two, so that
-/// `c_1` is right to h⁶ as the inner coefficients are. (The usual "not a knot" drops the third term, and its error at the ends was
-/// measured at 4 to 10 times the inner one.)
+/// Nodes: `f_i = c_i + δ²c_i/6`, one tridiagonal system, diagonally dominant, solved by elimination. Ends: turned
+/// round, that is `c = f − δ²f/6 + δ⁴f/36 − …`, taken at the second node with δ⁴f continued linearly from the next
+/// two, so that `c_1` is right to h⁶ as the inner coefficients are. (The usual "not a knot" drops the third term, and
+/// its error at the ends was measured at 4 to 10 times the inner one.)
 pub(crate) fn coefficients(values: &[f64]) -> Vec<f64> {
     let n = values.len();
     let at_second = |f: [f64; 6]| {
@@ -230,8 +232,8 @@ pub(crate) fn coefficients(values: &[f64]) -> Vec<f64> {
     c.iter().map(|c| c / 6.0).collect()
 }
 
-/// The coefficients of the two-dimensional spline through `values` (rows of `columns` nodes): first along each row, then
-/// along each column.
+/// The coefficients of the two-dimensional spline through `values` (rows of `columns` nodes): first along each row,
+/// then along each column.
 pub(crate) fn coefficients_2d(values: &[f64], columns: usize) -> Vec<f64> {
     let along_rows: Vec<Vec<f64>> = values.chunks_exact(columns).map(coefficients).collect();
     let width = columns + 2;

@@ -22,8 +22,8 @@ pub(crate) fn by_pixels(scene: &Scene, orbits: &impl Orbits) -> Vec<u8> {
     pixelwise::render(scene, &view, orbits, &|| ()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Whether the disk is seen at a point of the picture, given in pixels from its top left corner: by definition. Of the intervals of the swept
-/// angle that the ray spends between the disk's radii one holds a `φ₁ + kπ`.
+/// Whether the disk is seen at a point of the picture, given in pixels from its top left corner: by definition. Of
+/// the intervals of the swept angle that the ray spends between the disk's radii one holds a `φ₁ + kπ`.
 pub(crate) fn sees_disk(scene: &Scene, view: &View, column: f64, row: f64) -> bool {
     let ray = view.ray_at(view.x_at(column), view.y_at(row));
     let s = ray.transverse();

@@ -14,8 +14,8 @@ use crate::orbit::{Event, OrbitError, Orbits, Ray};
 /// `tolerance` (radians; more than 1e-3 counts as 1e-3, and from 1e-10 down the steps are as short as rounding makes
 /// worthwhile) bounds the error of every angle below 10 radians, beside what rounding the ray's own two numbers does
 /// to it (some 2⁻⁵² times |∂angle/∂ln dudphi| + |∂angle/∂ln u0|). Beyond that, near the photon sphere, errors grow as
-/// e^angle, and a ray some units in the last place from critical may end on the wrong side. So may a ray whose turning
-/// point comes within a share of 1e-5 `tolerance` of a watched radius be told to cross it or not.
+/// e^angle, and a ray some units in the last place from critical may end on the wrong side. So may a ray whose
+/// turning point comes within a share of 1e-5 `tolerance` of a watched radius be told to cross it or not.
 ///
 /// ```
 /// use darkness::orbit::{EventKind, Fate, Orbits, Ray, integrate::Adaptive};
@@ -41,7 +41,8 @@ pub struct Adaptive {
 /// times as much; and 1/6e4 is rounded down to this.
 const STEP_SHARE: f64 = 1e-5;
 
-/// The smallest error per step worth asking for, five units in the last place: below it a step's own rounding decides.
+/// The smallest error per step worth asking for, five units in the last place: below it a step's own rounding
+/// decides.
 const FINEST: f64 = 1e-15;
 
 /// The largest error per step allowed: the estimate means nothing where it is not small.
@@ -50,8 +51,8 @@ const COARSEST: f64 = 1e-8;
 /// The first step, where du/dφ is moderate; the first error estimate corrects it.
 const FIRST_STEP: f64 = 0.1;
 
-/// The longest step. From periapsis to infinity a ray sweeps more than π/2, and [`LONGEST_FALL`] stops it soon beyond:
-/// du/dφ never changes sign twice in one step, which would hide both turns.
+/// The longest step. From periapsis to infinity a ray sweeps more than π/2, and [`LONGEST_FALL`] stops it soon
+/// beyond: du/dφ never changes sign twice in one step, which would hide both turns.
 const LONGEST_STEP: f64 = 0.5;
 
 /// The largest change of u in one step, to first order: the whole flight has 1 to go, and far beyond its ends the

@@ -7,8 +7,8 @@ use super::fixed::{FixedStep, Scheme, euler, rk4};
 use crate::orbit::Ray;
 
 impl FixedStep {
-    /// Whether a ray meets the disk: whether at any of the orbit angles `first_crossing + kπ`, k = 0, 1, 2 …, where it
-    /// passes the disk's plane, its u lies between `u_outer` and `u_inner`.
+    /// Whether a ray meets the disk: whether at any of the orbit angles `first_crossing + kπ`, k = 0, 1, 2 …, where
+    /// it passes the disk's plane, its u lies between `u_outer` and `u_inner`.
     ///
     /// `first_crossing` is in [0, π); at 0 the ray starts in the plane, which is no crossing, and the first is at π.
     /// Between two crossings the steps are equal, of `h` or a little less, so that each crossing is a step's end and

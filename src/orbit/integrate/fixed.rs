@@ -109,9 +109,9 @@ pub(super) fn euler(at: State, h: f64) -> State {
     }
 }
 
-/// The classical method with its slopes of u written out: since `dw/dφ` depends on u alone, its four stages are these,
-/// in the form of Nyström (Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, §II.14), and two of
-/// them can be computed at once.
+/// The classical method with its slopes of u written out: since `dw/dφ` depends on u alone, its four stages are
+/// these, in the form of Nyström (Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, §II.14), and
+/// two of them can be computed at once.
 #[inline]
 pub(super) fn rk4(State { u, w }: State, h: f64) -> State {
     let half = 0.5 * h;

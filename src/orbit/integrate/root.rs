@@ -20,7 +20,8 @@ pub(super) fn bracketed(
     mut f: impl FnMut(f64) -> (f64, f64),
 ) -> f64 {
     let (mut low, mut high) = (low, high);
-    // From the low end, where a zero close to it keeps its relative precision; the first step may be any in the bracket.
+    // From the low end, where a zero close to it keeps its relative precision; the first step may be any in the
+    // bracket.
     let mut x = low;
     let mut previous = 4.0 * (high - low);
     for _ in 0..MAX_ITERATIONS {
