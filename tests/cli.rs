@@ -676,3 +676,24 @@ fn scenes_are_listed_and_a_printed_one_renders_the_same_picture() {
         &["clasic", "classic", "photon-ring"],
     );
 }
+
+#[test]
+fn scenes_that_are_no_scenes_are_refused_in_a_sentence() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    let scene = builtins()[0].toml();
+    let longer = scene.replacen("0.0,", "0.0, 1.0,", 1);
+    assert_ne!(longer, scene);
+    for (text, word) in [
+        (longer, "three numbers"),
+        (scene.replace("outer = 12.0", "outer = 1e101"), "disk.outer"),
+        ("#".repeat((1 << 20) + 1), "1 MiB"),
+    ] {
+        std::fs::write(here.join("scene.toml"), text).unwrap();
+        let output = darkness(here, &["render", "scene.toml"]).output().unwrap();
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{stderr}");
+        assert!(stderr.contains(word), "{word}: {stderr}");
+        assert!(stderr.len() < 2000, "{} bytes of error", stderr.len());
+    }
+}

@@ -582,3 +582,38 @@ proptest! {
         }
     }
 }
+
+/// Guards against a camera whose radius is an edge's own: whether a ray starts within the disk's radii then depends on
+/// where it goes, and a neighbour some units in the last place away sees the same.
+#[test]
+fn a_camera_on_the_radius_of_an_edge_sees_what_its_neighbours_see() {
+    let lookup = table("standard").lookup();
+    for edge in [3.0, 12.0_f64] {
+        for (x, z) in [(0.0, 1.0), (0.6, 0.8), (0.8, -0.6)] {
+            for focus in ["[0, 0, 0]", "[30, 0, 1]", "[0.5, 9, 3]"] {
+                let frames_at = |radius: f64| {
+                    let text = format!(
+                        "[camera]\nposition = [{:?}, 0, {:?}]\nfocus = {focus}\nup = [0, 1, 0.1]\nfov = 100\n\
+                         [disk]\ninner = 3\nouter = 12\n[image]\nwidth = 90\nheight = 54\n",
+                        x * radius,
+                        z * radius
+                    );
+                    let scene = Scene::from_toml(&text).unwrap_or_else(|error| panic!("{error}"));
+                    (
+                        by_curves(&scene, &lookup),
+                        by_pixels(&scene, &lookup),
+                        by_pixels(&scene, &Exact),
+                    )
+                };
+                let neighbour = frames_at(edge * (1.0 + 1e-12));
+                for factor in [1.0, 1.0 + f64::EPSILON, 1.0 - f64::EPSILON, 1.0 - 1e-12] {
+                    let frames = frames_at(edge * factor);
+                    let name = format!("r = {edge} × {factor:?}, ({x}, {z}), focus {focus}");
+                    assert!(frames.0 == neighbour.2, "{name}: curves");
+                    assert!(frames.1 == neighbour.2, "{name}: table, pixel by pixel");
+                    assert!(frames.2 == neighbour.2, "{name}: exact");
+                }
+            }
+        }
+    }
+}

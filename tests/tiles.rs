@@ -13,7 +13,10 @@ use tables::table;
 fn frames(scene: &Scene) -> (Vec<u8>, Vec<u8>) {
     let view = View::new(scene);
     let curves = Isoradials::new(&sight(scene, &view), &table("standard").lookup());
-    (render(&view, &curves), render_every_pixel(&view, &curves))
+    (
+        render(&view, &curves).unwrap(),
+        render_every_pixel(&view, &curves).unwrap(),
+    )
 }
 
 #[test]

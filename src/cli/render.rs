@@ -10,9 +10,9 @@ use super::picture::Destination;
 use super::progress::{Report, duration};
 use super::{Misuse, Threads, start_threads};
 use crate::isoradial::Isoradials;
+use crate::orbit::Orbits;
 use crate::orbit::exact::Exact;
-use crate::orbit::{OrbitError, Orbits};
-use crate::render::{mask, pixelwise};
+use crate::render::{RenderError, mask, pixelwise};
 use crate::scene::{DEFAULT_SCENE, Scene, View};
 
 /// Render a scene as a PNG picture
@@ -73,7 +73,7 @@ pub(super) fn run(args: &RenderArgs, report: Report) -> anyhow::Result<()> {
 }
 
 /// The scene's pixels: from isoradial curves with a table, else ray by ray.
-fn draw(scene: &Scene, method: &Method, report: Report) -> Result<Vec<u8>, OrbitError> {
+fn draw(scene: &Scene, method: &Method, report: Report) -> Result<Vec<u8>, RenderError> {
     let view = View::new(scene);
     match method {
         Method::Table(table) => {
@@ -81,10 +81,10 @@ fn draw(scene: &Scene, method: &Method, report: Report) -> Result<Vec<u8>, Orbit
             let sight = mask::sight(scene, &view);
             let curves = Isoradials::new(&sight, &lookup);
             if curves.error() <= sight.tolerance {
-                return Ok(mask::render(&view, &curves));
+                return mask::render(&view, &curves);
             }
             report.note(format_args!(
-                "the isoradial curves of this view are only right to {:.1e} pixels, so every pixel's ray is looked up by itself",
+                "the isoradial curves of this view are only right to {:.1e} pixels, so every pixel's ray is looked up by itself, which takes a hundred times as long",
                 curves.error()
             ));
             ray_by_ray(scene, &view, &lookup, report)
@@ -99,7 +99,7 @@ fn ray_by_ray(
     view: &View,
     orbits: &impl Orbits,
     report: Report,
-) -> Result<Vec<u8>, OrbitError> {
+) -> Result<Vec<u8>, RenderError> {
     let bar = report.bar(u64::from(view.height()), "drawing");
     pixelwise::render(scene, view, orbits, &|| bar.inc(1))
 }

@@ -1,6 +1,7 @@
 //! One point of an isoradial curve: the slope that carries a ray to a radius in a given angle.
 
 use super::Sight;
+use crate::orbit::Fate;
 use crate::orbit::invariants::{Family, Orbit, Point, three_u_minus_two};
 use crate::orbit::path::{Crossings, SweptAngles};
 
@@ -56,13 +57,15 @@ impl Target {
     /// with h (see the [module above](super)), through zero where it is just there. The size is the angle that is
     /// missing. Infinite where the ray never meets the radius.
     fn residual(&self, h: f64, angle: f64, angles: &impl SweptAngles) -> f64 {
-        let Crossings { inbound, outbound } = angles.crossings(&self.orbit(h), self.u_disk);
+        let orbit = self.orbit(h);
+        let Crossings { inbound, outbound } = angles.crossings(&orbit, self.u_disk);
         match (inbound, outbound) {
             (Some(enter), Some(leave)) => (angle - enter).min(leave - angle),
             (Some(enter), None) => angle - enter,
             (None, Some(leave)) => leave - angle,
-            (None, None) if self.u0 < self.u_disk => f64::NEG_INFINITY,
-            (None, None) => f64::INFINITY,
+            // Never there: all the way inside the radius, or all the way outside.
+            (None, None) if orbit.fate() == Fate::Capture => f64::INFINITY,
+            (None, None) => f64::NEG_INFINITY,
         }
     }
 

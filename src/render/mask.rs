@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::{RenderError, blank};
 use crate::isoradial::{Bundle, Isoradials, Sight, Verdict};
 use crate::scene::{Affine, Scene, View};
 
@@ -39,10 +40,13 @@ const SMALLEST: usize = 4;
 ///
 /// Tiles whose rays all meet the same are filled at once; the others are split, down to single pixels along the
 /// disk's edges.
-pub fn render(view: &View, curves: &Isoradials) -> Vec<u8> {
+///
+/// # Errors
+/// [`RenderError::Memory`]
+pub fn render(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> {
     let frame = Frame::new(view, curves);
     let width = view.width() as usize;
-    let mut pixels = vec![0; width * view.height() as usize];
+    let mut pixels = blank(view)?;
     pixels
         .par_chunks_mut(width * TILE)
         .enumerate()
@@ -58,14 +62,17 @@ pub fn render(view: &View, curves: &Isoradials) -> Vec<u8> {
                 frame.fill(rows, band * TILE, tile, TILE);
             }
         });
-    pixels
+    Ok(pixels)
 }
 
 /// The same pixels, each asked by itself.
-pub fn render_every_pixel(view: &View, curves: &Isoradials) -> Vec<u8> {
+///
+/// # Errors
+/// [`RenderError::Memory`]
+pub fn render_every_pixel(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> {
     let frame = Frame::new(view, curves);
     let width = view.width() as usize;
-    let mut pixels = vec![0; width * view.height() as usize];
+    let mut pixels = blank(view)?;
     pixels
         .par_chunks_exact_mut(width)
         .enumerate()
@@ -81,7 +88,7 @@ pub fn render_every_pixel(view: &View, curves: &Isoradials) -> Vec<u8> {
                 },
             );
         });
-    pixels
+    Ok(pixels)
 }
 
 /// A rectangle of pixels; `top` counts from the first row of its band.

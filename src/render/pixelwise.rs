@@ -5,6 +5,7 @@ use core::f64::consts::PI;
 use rayon::prelude::*;
 
 use super::mask::WHITE;
+use super::{RenderError, blank};
 use crate::orbit::{Event, EventKind, OrbitError, Orbits, Ray};
 use crate::scene::{Disk, Scene, View};
 
@@ -12,15 +13,15 @@ use crate::scene::{Disk, Scene, View};
 /// each row.
 ///
 /// # Errors
-/// What the method returns for the first row that has a ray it cannot follow.
+/// [`RenderError::Memory`]; [`RenderError::Orbit`] with what the method returns for a ray that it cannot follow.
 pub fn render(
     scene: &Scene,
     view: &View,
     orbits: &impl Orbits,
     row_done: &(dyn Fn() + Sync),
-) -> Result<Vec<u8>, OrbitError> {
+) -> Result<Vec<u8>, RenderError> {
     let width = view.width() as usize;
-    let mut pixels = vec![0; width * view.height() as usize];
+    let mut pixels = blank(view)?;
     pixels
         .par_chunks_exact_mut(width)
         .enumerate()
@@ -33,37 +34,42 @@ pub fn render(
                     let first = view.plane_crossing(ray.ta, s);
                     let start = Ray::new(view.u0(), view.dudphi(ray))?;
                     let events = orbits.follow(start, &[scene.disk().inner, scene.disk().outer])?;
-                    if meets(&events, view.radius(), first, scene.disk()) {
+                    if meets(&events, first, scene.disk()) {
                         *pixel = WHITE;
                     }
                 }
             }
             row_done();
-            Ok(())
+            Ok::<(), OrbitError>(())
         })?;
     Ok(pixels)
 }
 
-/// Whether a ray from `radius` with these events (crossings of the disk's two radii, and the end) is between the two
-/// radii at one of the angles `first + kπ`; at 0 the ray starts in the plane, which is no crossing.
-fn meets(events: &[Event], radius: f64, first: f64, disk: &Disk) -> bool {
+/// Whether a ray with these events (crossings of the disk's two radii, and the end) is between the two radii at one of the
+/// angles `first + kπ`; at 0 the ray starts in the plane, which is no crossing.
+fn meets(events: &[Event], first: f64, disk: &Disk) -> bool {
     let crosses_within = |from: f64, to: f64| {
         let least = if first > 0.0 { 0.0 } else { 1.0 };
         let k = ((from - first) / PI).ceil().max(least);
         first + k * PI <= to
     };
-    let mut entered = (disk.inner <= radius && radius <= disk.outer).then_some(0.0);
+    let enters = |event: &Event| {
+        (event.kind == EventKind::Inbound && event.radius == disk.outer)
+            || (event.kind == EventKind::Outbound && event.radius == disk.inner)
+    };
+    // A ray that starts between the radii is one whose first crossing leads out of them. The camera's radius would not
+    // tell, where it is the inner or the outer one: there it depends on where the ray goes.
+    let starts_within = events
+        .first()
+        .is_some_and(|event| !matches!(event.kind, EventKind::End(_)) && !enters(event));
+    let mut entered = starts_within.then_some(0.0);
     for event in events {
         if let Some(from) = entered
             && crosses_within(from, event.angle)
         {
             return true;
         }
-        entered = match event.kind {
-            EventKind::Inbound if event.radius == disk.outer => Some(event.angle),
-            EventKind::Outbound if event.radius == disk.inner => Some(event.angle),
-            _ => None,
-        };
+        entered = enters(event).then_some(event.angle);
     }
     false
 }

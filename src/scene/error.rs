@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::builtin::builtins;
-use super::validate::{FARTHEST_CAMERA, ISCO_RADIUS, MAX_IMAGE_SIDE, MAX_PIXELS};
+use super::validate::{FARTHEST_CAMERA, ISCO_RADIUS, MAX_IMAGE_SIDE, MAX_PIXELS, WIDEST_DISK};
 
 /// Why a scene is refused: what is wrong, what is allowed, and why.
 #[derive(Debug, thiserror::Error)]
@@ -91,6 +91,14 @@ pub enum SceneError {
     NoWidth {
         /// The inner edge's radius.
         inner: f64,
+        /// The outer edge's radius.
+        outer: f64,
+    },
+    /// The disk reaches too far.
+    #[error(
+        "disk.outer = {outer:?} is not allowed: at most {WIDEST_DISK:e}, since the squares of farther places leave double precision"
+    )]
+    TooWide {
         /// The outer edge's radius.
         outer: f64,
     },

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use serde::Deserialize;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer};
 
 use super::{Scene, SceneError};
 
@@ -19,10 +20,11 @@ pub(super) struct SceneFile {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CameraTable {
+    #[serde(deserialize_with = "three_numbers")]
     pub(super) position: [f64; 3],
-    #[serde(default = "hole")]
+    #[serde(default = "hole", deserialize_with = "three_numbers")]
     pub(super) focus: [f64; 3],
-    #[serde(default = "plus_z")]
+    #[serde(default = "plus_z", deserialize_with = "three_numbers")]
     pub(super) up: [f64; 3],
     pub(super) fov: f64,
 }
@@ -33,7 +35,7 @@ pub(super) struct CameraTable {
 pub(super) struct DiskTable {
     pub(super) inner: f64,
     pub(super) outer: f64,
-    #[serde(default = "plus_z")]
+    #[serde(default = "plus_z", deserialize_with = "three_numbers")]
     pub(super) normal: [f64; 3],
 }
 
@@ -53,6 +55,17 @@ fn hole() -> [f64; 3] {
 
 fn plus_z() -> [f64; 3] {
     [0.0, 0.0, 1.0]
+}
+
+/// A vector. (Read straight into an array, a fourth number would pass unnoticed.)
+fn three_numbers<'de, D: Deserializer<'de>>(source: D) -> Result<[f64; 3], D::Error> {
+    let numbers = Vec::<f64>::deserialize(source)?;
+    <[f64; 3]>::try_from(numbers).map_err(|numbers| {
+        D::Error::custom(format_args!(
+            "a vector has three numbers, x, y and z, and this one has {}",
+            numbers.len()
+        ))
+    })
 }
 
 impl SceneFile {

@@ -31,6 +31,8 @@ mod file;
 mod validate;
 mod vector;
 
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::Path;
 
 use glam::DVec3;
@@ -38,7 +40,9 @@ use glam::DVec3;
 pub use builtin::{Builtin, builtins};
 pub use camera::{Affine, PixelRay, View};
 pub use error::SceneError;
-pub use validate::{FARTHEST_CAMERA, HORIZON_RADIUS, ISCO_RADIUS, MAX_IMAGE_SIDE, MAX_PIXELS};
+pub use validate::{
+    FARTHEST_CAMERA, HORIZON_RADIUS, ISCO_RADIUS, MAX_IMAGE_SIDE, MAX_PIXELS, WIDEST_DISK,
+};
 
 /// The name of the scene rendered where none is asked for.
 pub const DEFAULT_SCENE: &str = "classic";
@@ -124,9 +128,9 @@ impl Scene {
         if let Some(scene) = path.to_str().and_then(Self::builtin) {
             return Ok(scene);
         }
-        let text = std::fs::read_to_string(path).map_err(|error| {
+        let text = read(path).map_err(|error| {
             let path = path.to_owned();
-            if error.kind() == std::io::ErrorKind::NotFound {
+            if error.kind() == io::ErrorKind::NotFound {
                 SceneError::Unknown { path }
             } else {
                 SceneError::Read { path, error }
@@ -166,6 +170,23 @@ impl Scene {
     pub fn image(&self) -> ImageSize {
         self.image
     }
+}
+
+/// A scene's file has some lines; what is longer than this is something else, and may have no end.
+const LONGEST_FILE: u64 = 1 << 20;
+
+fn read(path: &Path) -> io::Result<String> {
+    let mut text = String::new();
+    let length = File::open(path)?
+        .take(LONGEST_FILE + 1)
+        .read_to_string(&mut text)?;
+    if length as u64 > LONGEST_FILE {
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidData,
+            "it is over 1 MiB long, which no scene is",
+        ));
+    }
+    Ok(text)
 }
 
 #[cfg(test)]

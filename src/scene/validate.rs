@@ -16,6 +16,10 @@ pub const ISCO_RADIUS: f64 = 3.0;
 /// The farthest a camera may stand, in Schwarzschild radii: there two points of double precision are 1/8 apart.
 pub const FARTHEST_CAMERA: f64 = 1e15;
 
+/// The largest outer edge of a disk, in Schwarzschild radii: as far as rays are followed
+/// ([`MIN_U`](crate::orbit::MIN_U)).
+pub const WIDEST_DISK: f64 = 1e100;
+
 /// The most pixels on a side of a picture.
 pub const MAX_IMAGE_SIDE: i64 = 1_000_000;
 
@@ -130,6 +134,9 @@ fn disk(table: &DiskTable) -> Result<Disk, SceneError> {
     };
     if disk.inner < ISCO_RADIUS {
         return Err(SceneError::InnerBelowIsco { inner: disk.inner });
+    }
+    if disk.outer > WIDEST_DISK {
+        return Err(SceneError::TooWide { outer: disk.outer });
     }
     if disk.outer <= disk.inner {
         return Err(SceneError::NoWidth {

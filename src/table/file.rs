@@ -28,7 +28,7 @@ pub enum TableError {
         source: io::Error,
     },
     /// The file is no usable table.
-    #[error("{}: this table cannot be used: {problem}. Make it anew with `{}`", path.display(), remedy(path, true))]
+    #[error("{}: this table cannot be used: {problem}. {}", path.display(), mend(path, problem))]
     Unusable {
         /// The file.
         path: PathBuf,
@@ -61,6 +61,20 @@ fn remedy(path: &Path, force: bool) -> String {
     } else {
         let quoted = path.display().to_string().replace('\'', "'\\''");
         format!("darkness table {name}{force} -o '{quoted}'")
+    }
+}
+
+/// What to do about a file that is no usable table. One that is somebody else's is not to be written over unawares, unless
+/// it lies where a table is to be.
+fn mend(path: &Path, problem: &FormatError) -> String {
+    let kept = Spec::NAMES.iter().any(|name| default_path(name) == path);
+    if *problem == FormatError::Foreign && !kept {
+        format!(
+            "Name another file, or let a table take the place of this one with `{}`",
+            remedy(path, true)
+        )
+    } else {
+        format!("Make it anew with `{}`", remedy(path, true))
     }
 }
 

@@ -13,7 +13,7 @@ use darkness::scene::{Scene, View};
 pub(crate) fn by_curves(scene: &Scene, angles: &impl SweptAngles) -> Vec<u8> {
     let view = View::new(scene);
     let curves = Isoradials::new(&mask::sight(scene, &view), angles);
-    mask::render(&view, &curves)
+    mask::render(&view, &curves).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The frame from each pixel's ray followed by itself.
@@ -42,7 +42,12 @@ pub(crate) fn sees_disk(scene: &Scene, view: &View, column: f64, row: f64) -> bo
             .take_while(|event| event.angle <= angle)
             .last();
         match before.map(|event| (event.kind, event.radius)) {
-            None => (disk.inner..=disk.outer).contains(&view.radius()),
+            // Within from the start where the first crossing leads out: so too for a camera on an edge's radius.
+            None => match (events[0].kind, events[0].radius) {
+                (EventKind::Inbound, radius) => radius == disk.inner,
+                (EventKind::Outbound, radius) => radius == disk.outer,
+                (EventKind::End(_), _) => false,
+            },
             Some((EventKind::Inbound, radius)) => radius == disk.outer,
             Some((EventKind::Outbound, radius)) => radius == disk.inner,
             Some((EventKind::End(_), _)) => false,
