@@ -15,7 +15,7 @@
 //! critical ray, which falls as `e^{−φ}`: the photon rings keep their digits however thin they are.
 //!
 //! # The axis
-//! The plane is met at `φ₁ + kπ`, `tan φ₁ = N/D`, `N = |n·p̂| s ≥ 0`. Each quarter turn of φ is one [piece](self) of
+//! The plane is met at `φ₁ + kπ`, `tan φ₁ = N/D`, `N = |n·p̂| s ≥ 0`. Each quarter turn of φ is one piece of
 //! its own: its axis is `x = N/(N + D)` while D ≥ 0 and `x = |D|/(N + |D|)` beyond π/2, one division and no
 //! trigonometry, analytic in φ within the piece. In the first piece h has a pole at φ = 0; there `x h` is kept.
 
@@ -127,15 +127,13 @@ impl Isoradials {
                 pole: k == 0 && quarter == 0,
             };
             let draw = |u_disk: f64| {
-                Nodes::draw(
-                    &Target {
-                        u_disk,
-                        ..Target::new(sight, self.critical)
-                    },
-                    at,
-                    sight,
-                    angles,
-                )
+                let target = Target {
+                    u0: sight.u0,
+                    slope_scale: sight.slope_scale,
+                    critical: self.critical,
+                    u_disk,
+                };
+                Nodes::draw(&target, at, sight, angles)
             };
             let (inner, outer) = (draw(sight.u_inner), draw(sight.u_outer));
             let count = inner.values.len().max(outer.values.len());

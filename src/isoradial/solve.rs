@@ -1,8 +1,7 @@
 //! One point of an isoradial curve: the slope that carries a ray to a radius in a given angle.
 
-use super::Sight;
 use crate::orbit::Fate;
-use crate::orbit::invariants::{Family, Orbit, Point, three_u_minus_two};
+use crate::orbit::invariants::Orbit;
 use crate::orbit::path::{Crossings, SweptAngles};
 
 /// From where, to which radius.
@@ -17,40 +16,15 @@ pub(super) struct Target {
 }
 
 impl Target {
-    pub(super) fn new(sight: &Sight, critical: f64) -> Self {
-        Self {
-            u0: sight.u0,
-            slope_scale: sight.slope_scale,
-            critical,
-            u_disk: f64::NAN,
-        }
-    }
-
     /// The orbit with `κ = κ_c + h`. `Δ = (w − w_c)(w + w_c)` from h itself: exact however close to critical.
     fn orbit(&self, h: f64) -> Orbit {
         let excess = self.slope_scale * h;
         let critical = self.slope_scale * self.critical;
-        let w = critical + excess;
-        let delta = excess * (2.0 * critical + excess);
-        let family = if delta > 0.0 {
-            Family::Monotone
-        } else if three_u_minus_two(self.u0) < 0.0 {
-            Family::Scattered
-        } else {
-            Family::Trapped
-        };
-        let start = Point {
-            u: self.u0,
-            slope: w.abs(),
-        };
-        let e2 = w * w + self.u0 * self.u0 * (1.0 - self.u0);
-        Orbit {
-            start,
-            inward: w > 0.0,
-            e2,
-            delta,
-            family,
-        }
+        Orbit::with_delta(
+            self.u0,
+            critical + excess,
+            excess * (2.0 * critical + excess),
+        )
     }
 
     /// Positive where the ray of `h` is closer to the hole than the radius sought when it has swept `angle`; rises
@@ -76,10 +50,12 @@ impl Target {
     pub(super) fn solve(&self, angle: f64, guess: f64, angles: &impl SweptAngles) -> f64 {
         const STEPS: usize = 200;
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
-        let mut stride = 1e-4 * guess.abs().max(1e-3 * self.critical.abs()).max(1e-300);
-        if guess.abs() < 1e-3 * self.critical.abs() && guess != 0.0 {
-            stride = 1e-4 * guess.abs();
-        }
+        let scale = if guess == 0.0 {
+            self.critical.abs().max(f64::MIN_POSITIVE)
+        } else {
+            guess.abs()
+        };
+        let mut stride = 1e-4 * scale;
         let mut previous: Option<(f64, f64)> = None;
         let mut h = guess;
         for step in 0..STEPS {

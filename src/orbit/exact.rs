@@ -40,6 +40,17 @@ impl SweptAngles for Exact {
     }
 }
 
+/// The inverse radius at which an orbit with `e² < 4/27` turns: u2 outside the photon sphere, u3 inside.
+pub(crate) fn turning_u(orbit: &Orbit) -> f64 {
+    let roots = RealRoots::new(orbit.e2, orbit.delta);
+    let periapsis = roots.u1 + roots.a;
+    if orbit.family == Family::Trapped {
+        periapsis + roots.delta
+    } else {
+        periapsis
+    }
+}
+
 /// The roots `u1 ≤ 0 ≤ u2 < u3` of P where `e² < 4/27`, by their differences.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RealRoots {

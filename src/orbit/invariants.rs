@@ -47,8 +47,13 @@ impl Orbit {
     /// The constants of motion of `ray`.
     pub fn new(ray: Ray) -> Self {
         let (u, w) = (ray.u(), ray.dudphi());
+        Self::with_delta(u, w, distance_from_critical(u, w.abs()))
+    }
+
+    /// The orbit that starts at inverse radius `u` with slope `w`, whose `Δ = w² + u²(1 − u) − 4/27` is known better than
+    /// the two tell.
+    pub(crate) fn with_delta(u: f64, w: f64, delta: f64) -> Self {
         let slope = w.abs();
-        let delta = distance_from_critical(u, slope);
         let family = if delta > 0.0 {
             Family::Monotone
         } else if three_u_minus_two(u) < 0.0 {

@@ -127,6 +127,22 @@ pub trait Orbits: Sync {
     /// # Errors
     /// [`OrbitError::Radius`] for a radius that cannot be watched, [`OrbitError::StepLimit`] where a stepped method gives up.
     fn follow(&self, ray: Ray, radii: &[f64]) -> Result<Vec<Event>, OrbitError>;
+
+    /// Where `ray` turns back: its periapsis outside the photon sphere, its apoapsis inside. `None` for a ray that does
+    /// not, or has its turning point behind it or at its start.
+    ///
+    /// # Errors
+    /// [`OrbitError::StepLimit`] where a stepped method gives up.
+    fn turning_point(&self, ray: Ray) -> Result<Option<TurningPoint>, OrbitError>;
+}
+
+/// Where a ray turns back.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TurningPoint {
+    /// Inverse radius, where du/dφ = 0.
+    pub u: f64,
+    /// The angle swept from the start, in radians.
+    pub angle: f64,
 }
 
 /// The radii to watch, as inverse radii in ascending `u`, each once.

@@ -1,7 +1,10 @@
 //! A ray's events, put together from swept angles. Written once for every method that knows those.
 
+use super::exact::turning_u;
 use super::invariants::{Family, Orbit, Point};
-use super::{Event, EventKind, OrbitError, Orbits, Ray, WatchedRadius, inverse_radii};
+use super::{
+    Event, EventKind, OrbitError, Orbits, Ray, TurningPoint, WatchedRadius, inverse_radii,
+};
 
 /// A method that knows the angle a ray sweeps between two points of its orbit.
 pub trait SweptAngles: Sync {
@@ -101,5 +104,14 @@ impl<T: SweptAngles> Orbits for T {
             angle: self.to_end(&orbit),
         });
         Ok(events)
+    }
+
+    fn turning_point(&self, ray: Ray) -> Result<Option<TurningPoint>, OrbitError> {
+        let orbit = Orbit::new(ray);
+        // There and back to the start is twice the way there, and needs no point where du/dφ is 0 but for rounding.
+        Ok(turns(&orbit).then(|| TurningPoint {
+            u: turning_u(&orbit),
+            angle: 0.5 * self.around(&orbit, orbit.start, orbit.start),
+        }))
     }
 }

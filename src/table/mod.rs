@@ -26,7 +26,7 @@ pub use lookup::Lookup;
 pub use measure::{Measured, measure};
 pub use spec::{Nodes, Spec};
 
-use crate::orbit::{Event, OrbitError, Orbits, Ray};
+use crate::orbit::{Event, OrbitError, Orbits, Ray, TurningPoint};
 use format::Layout;
 
 /// A table over bytes that begin at a multiple of 8: a mapped file, or [`Memory`].
@@ -87,5 +87,9 @@ impl<B: FixedBytes> Table<B> {
 impl<B: FixedBytes + Sync> Orbits for Table<B> {
     fn follow(&self, ray: Ray, radii: &[f64]) -> Result<Vec<Event>, OrbitError> {
         self.lookup().follow(ray, radii)
+    }
+
+    fn turning_point(&self, ray: Ray) -> Result<Option<TurningPoint>, OrbitError> {
+        self.lookup().turning_point(ray)
     }
 }

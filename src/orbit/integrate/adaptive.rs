@@ -2,7 +2,7 @@
 
 use super::crossings::{Crossings, Piece};
 use super::{DEFAULT_MAX_STEPS, Departure, State, acceleration, depart, dop853, opposite, root};
-use crate::orbit::{Event, OrbitError, Orbits, Ray};
+use crate::orbit::{Event, OrbitError, Orbits, Ray, TurningPoint};
 
 /// The orbit equation integrated with the Runge–Kutta method DOP853 in steps that keep each swept angle's error below
 /// a tolerance.
@@ -78,8 +78,19 @@ impl Default for Adaptive {
 
 impl Orbits for Adaptive {
     fn follow(&self, ray: Ray, radii: &[f64]) -> Result<Vec<Event>, OrbitError> {
+        self.fly(ray, radii).map(Crossings::into_events)
+    }
+
+    fn turning_point(&self, ray: Ray) -> Result<Option<TurningPoint>, OrbitError> {
+        self.fly(ray, &[]).map(|flight| flight.turning_point())
+    }
+}
+
+impl Adaptive {
+    /// The whole flight, from the start to its end.
+    fn fly(&self, ray: Ray, radii: &[f64]) -> Result<Crossings, OrbitError> {
         let (mut state, mut crossings) = match depart(ray, radii)? {
-            Departure::Done(events) => return Ok(events),
+            Departure::Done(crossings) => return Ok(crossings),
             Departure::Bound(state, crossings) => (state, crossings),
         };
         let allowed = (STEP_SHARE * self.tolerance.max(0.0)).clamp(FINEST, COARSEST);
@@ -95,9 +106,10 @@ impl Orbits for Adaptive {
                 h *= factor.max(0.2);
                 continue;
             }
-            let eventful = !crossings.clear_until(next.u) || opposite(state.w, next.w);
+            let turns = opposite(state.w, next.w) || next.w == 0.0;
+            let eventful = turns || !crossings.clear_until(next.u);
             if eventful && pass_step(&mut crossings, state, next, h, angle) {
-                return Ok(crossings.into_events());
+                return Ok(crossings);
             }
             angle += h;
             state = next;
@@ -121,6 +133,9 @@ fn pass_step(crossings: &mut Crossings, from: State, to: State, h: f64, angle: f
             inward,
             turns: to.w == 0.0,
         };
+        if piece.turns {
+            crossings.turn(to.u, angle + h);
+        }
         return pass_piece(crossings, piece, (0.0, h), from, angle);
     }
     let turn = root::bracketed(0.0, h, !inward, |part| {
@@ -128,6 +143,7 @@ fn pass_step(crossings: &mut Crossings, from: State, to: State, h: f64, angle: f
         (at.w, acceleration(at.u))
     });
     let turning = dop853::step(from, turn).u;
+    crossings.turn(turning, angle + turn);
     let towards = Piece {
         from: from.u,
         to: turning,

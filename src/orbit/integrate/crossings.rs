@@ -1,6 +1,6 @@
 //! Which watched radii a piece of a path passes, in order.
 
-use crate::orbit::{Event, EventKind, Fate, WatchedRadius};
+use crate::orbit::{Event, EventKind, Fate, TurningPoint, WatchedRadius};
 
 /// A piece of a path along which u only rises or only falls.
 #[derive(Debug, Clone, Copy)]
@@ -21,6 +21,7 @@ pub(super) struct Crossings {
     /// By ascending u.
     watched: Vec<WatchedRadius>,
     events: Vec<Event>,
+    turning_point: Option<TurningPoint>,
     /// Nearest level of u (a watched radius, infinity or the horizon) at or below the present u.
     below: f64,
     /// Nearest level at or above the present u.
@@ -35,6 +36,7 @@ impl Crossings {
         let mut crossings = Self {
             watched,
             events,
+            turning_point: None,
             below: 0.0,
             above: 1.0,
         };
@@ -115,6 +117,16 @@ impl Crossings {
             .and_then(|i| self.watched.get(i))
             .map_or(0.0, |level| level.u);
         self.above = self.watched.get(below).map_or(1.0, |level| level.u);
+    }
+
+    /// Reports that the flight turned back.
+    pub(super) fn turn(&mut self, u: f64, angle: f64) {
+        self.turning_point.get_or_insert(TurningPoint { u, angle });
+    }
+
+    /// Where the flight turned back.
+    pub(super) fn turning_point(&self) -> Option<TurningPoint> {
+        self.turning_point
     }
 
     /// All events reported.

@@ -2,7 +2,7 @@
 
 use super::crossings::{Crossings, Piece};
 use super::{DEFAULT_MAX_STEPS, Departure, State, acceleration, depart, opposite, root};
-use crate::orbit::{Event, OrbitError, Orbits, Ray};
+use crate::orbit::{Event, OrbitError, Orbits, Ray, TurningPoint};
 
 /// How a step is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -38,16 +38,24 @@ impl FixedStep {
         }
     }
 
+    /// The whole flight, from the start to its end.
+    fn fly(&self, ray: Ray, radii: &[f64]) -> Result<Crossings, OrbitError> {
+        match self.scheme {
+            Scheme::Euler => self.fly_by(euler, pass_line, ray, radii),
+            Scheme::Rk4 => self.fly_by(rk4, pass_cubic, ray, radii),
+        }
+    }
+
     #[inline]
-    fn follow_by(
+    fn fly_by(
         &self,
         step: impl Fn(State, f64) -> State,
         pass_step: impl Fn(&mut Crossings, &Step) -> bool,
         ray: Ray,
         radii: &[f64],
-    ) -> Result<Vec<Event>, OrbitError> {
+    ) -> Result<Crossings, OrbitError> {
         let (mut from, mut crossings) = match depart(ray, radii)? {
-            Departure::Done(events) => return Ok(events),
+            Departure::Done(crossings) => return Ok(crossings),
             Departure::Bound(state, crossings) => (state, crossings),
         };
         if self.h.is_nan() || self.h <= 0.0 {
@@ -72,7 +80,7 @@ impl FixedStep {
                     },
                 )
             {
-                return Ok(crossings.into_events());
+                return Ok(crossings);
             }
             from = to;
         }
@@ -85,10 +93,11 @@ impl FixedStep {
 
 impl Orbits for FixedStep {
     fn follow(&self, ray: Ray, radii: &[f64]) -> Result<Vec<Event>, OrbitError> {
-        match self.scheme {
-            Scheme::Euler => self.follow_by(euler, pass_line, ray, radii),
-            Scheme::Rk4 => self.follow_by(rk4, pass_cubic, ray, radii),
-        }
+        self.fly(ray, radii).map(Crossings::into_events)
+    }
+
+    fn turning_point(&self, ray: Ray) -> Result<Option<TurningPoint>, OrbitError> {
+        self.fly(ray, &[]).map(|flight| flight.turning_point())
     }
 }
 
@@ -138,6 +147,9 @@ fn pass_line(crossings: &mut Crossings, step: &Step) -> bool {
         inward: from.w > 0.0,
         turns: opposite(from.w, to.w) || to.w == 0.0,
     };
+    if piece.turns {
+        crossings.turn(to.u, angle + h);
+    }
     crossings.pass(piece, |u| angle + h * ((u - from.u) / (to.u - from.u)))
 }
 
@@ -153,12 +165,16 @@ fn pass_cubic(crossings: &mut Crossings, step: &Step) -> bool {
             inward,
             turns: to.w == 0.0,
         };
+        if piece.turns {
+            crossings.turn(to.u, step.angle + h);
+        }
         return cubic.pass(crossings, piece, (0.0, h), step.angle);
     }
     let turn = root::bracketed(0.0, h, !inward, |part| {
         (cubic.slope(part), cubic.curvature(part))
     });
     let turning = from.u + cubic.rise(turn);
+    crossings.turn(turning, step.angle + turn);
     let towards = Piece {
         from: from.u,
         to: turning,

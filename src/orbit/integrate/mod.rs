@@ -18,7 +18,7 @@ mod root;
 pub use adaptive::Adaptive;
 pub use fixed::{FixedStep, Scheme};
 
-use super::{Event, OrbitError, Ray};
+use super::{OrbitError, Ray};
 use crossings::{Crossings, Piece};
 
 /// Steps after which a stepped solution gives up, where nothing else is asked for. A ray one unit in the last place
@@ -56,7 +56,7 @@ fn opposite(a: f64, b: f64) -> bool {
 /// What is left of a ray's flight when it is about to be stepped.
 enum Departure {
     /// The path is straight: nothing is left to do.
-    Done(Vec<Event>),
+    Done(Crossings),
     /// The state to step from, and the crossings to look for.
     Bound(State, Crossings),
 }
@@ -79,7 +79,7 @@ fn depart(ray: Ray, radii: &[f64]) -> Result<Departure, OrbitError> {
             turns: false,
         };
         crossings.pass(piece, |u| (u - start.u).abs() / start.w.abs());
-        return Ok(Departure::Done(crossings.into_events()));
+        return Ok(Departure::Done(crossings));
     }
     Ok(Departure::Bound(start, Crossings::new(watched, start.u)))
 }
