@@ -583,8 +583,8 @@ proptest! {
     }
 }
 
-/// Guards against a camera whose radius is an edge's own: whether a ray starts within the disk's radii then depends on
-/// where it goes, and a neighbour some units in the last place away sees the same.
+/// Guards against a camera whose radius is an edge's own: whether a ray starts within the disk's radii then depends
+/// on where it goes, and a neighbour some units in the last place away sees the same.
 #[test]
 fn a_camera_on_the_radius_of_an_edge_sees_what_its_neighbours_see() {
     let lookup = table("standard").lookup();

@@ -45,8 +45,8 @@ fn all_methods_find_the_root_at_the_same_angle() {
             },
             "{ray:?}: {truth:?}"
         );
-        // The promises of the table and of the adaptive method; RK4 and Euler by their orders, 30 h⁴ and 30 h being what
-        // rays that wind for some radians near the photon sphere make of a local error of h⁵ and h².
+        // The promises of the table and of the adaptive method; RK4 and Euler by their orders, 30 h⁴ and 30 h being
+        // what rays that wind for some radians near the photon sphere make of a local error of h⁵ and h².
         let methods: [(&str, &dyn Orbits, f64); 4] = [
             ("table", &table, 1e-9),
             ("adaptive", &Adaptive::default(), 1e-9),

@@ -33,8 +33,8 @@ pub(super) struct MethodArgs {
     method: MethodName,
     #[arg(long, value_name = "FILE", help = TABLE_HELP)]
     table: Option<PathBuf>,
-    /// The error aimed at in an angle by --method integrate, in radians, 1e-13 to 1e-3; rays that wind for more than ten
-    /// radians near the photon sphere may miss it, and their fate [default: 1e-9]
+    /// The error aimed at in an angle by --method integrate, in radians, 1e-13 to 1e-3; rays that wind for more than
+    /// ten radians near the photon sphere may miss it, and their fate [default: 1e-9]
     #[arg(long, value_name = "T", value_parser = tolerance)]
     integrate_tolerance: Option<f64>,
 }

@@ -50,8 +50,8 @@ impl Orbit {
         Self::with_delta(u, w, distance_from_critical(u, w.abs()))
     }
 
-    /// The orbit that starts at inverse radius `u` with slope `w`, whose `Δ = w² + u²(1 − u) − 4/27` is known better than
-    /// the two tell.
+    /// The orbit that starts at inverse radius `u` with slope `w`, whose `Δ = w² + u²(1 − u) − 4/27` is known better
+    /// than the two tell.
     pub(crate) fn with_delta(u: f64, w: f64, delta: f64) -> Self {
         let slope = w.abs();
         let family = if delta > 0.0 {

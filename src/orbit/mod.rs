@@ -128,8 +128,8 @@ pub trait Orbits: Sync {
     /// [`OrbitError::Radius`] for a radius that cannot be watched, [`OrbitError::StepLimit`] where a stepped method gives up.
     fn follow(&self, ray: Ray, radii: &[f64]) -> Result<Vec<Event>, OrbitError>;
 
-    /// Where `ray` turns back: its periapsis outside the photon sphere, its apoapsis inside. `None` for a ray that does
-    /// not, or has its turning point behind it or at its start.
+    /// Where `ray` turns back: its periapsis outside the photon sphere, its apoapsis inside. `None` for a ray that
+    /// does not, or has its turning point behind it or at its start.
     ///
     /// # Errors
     /// [`OrbitError::StepLimit`] where a stepped method gives up.

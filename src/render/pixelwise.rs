@@ -45,8 +45,8 @@ pub fn render(
     Ok(pixels)
 }
 
-/// Whether a ray with these events (crossings of the disk's two radii, and the end) is between the two radii at one of the
-/// angles `first + kπ`; at 0 the ray starts in the plane, which is no crossing.
+/// Whether a ray with these events (crossings of the disk's two radii, and the end) is between the two radii at one
+/// of the angles `first + kπ`; at 0 the ray starts in the plane, which is no crossing.
 fn meets(events: &[Event], first: f64, disk: &Disk) -> bool {
     let crosses_within = |from: f64, to: f64| {
         let least = if first > 0.0 { 0.0 } else { 1.0 };
@@ -57,8 +57,8 @@ fn meets(events: &[Event], first: f64, disk: &Disk) -> bool {
         (event.kind == EventKind::Inbound && event.radius == disk.outer)
             || (event.kind == EventKind::Outbound && event.radius == disk.inner)
     };
-    // A ray that starts between the radii is one whose first crossing leads out of them. The camera's radius would not
-    // tell, where it is the inner or the outer one: there it depends on where the ray goes.
+    // A ray that starts between the radii is one whose first crossing leads out of them. The camera's radius would
+    // not tell, where it is the inner or the outer one: there it depends on where the ray goes.
     let starts_within = events
         .first()
         .is_some_and(|event| !matches!(event.kind, EventKind::End(_)) && !enters(event));

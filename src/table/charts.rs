@@ -6,7 +6,7 @@
 //!
 //! | chart | where | axes | stored | swept angle |
 //! |---|---|---|---|---|
-//! | critical | 0.64 ≤ 27e²/4 ≤ 3 | γ = √(u + 1/3), e | A(e), B(γ, e) | J = ±A ln((s + \|u̇\|)/√\|Δ\|) + (\|u̇\|/γ²) B, a difference or a sum of two J |
+//! | critical | 0.64 ≤ 27e²/4 ≤ 3 | γ = √(u + 1/3), e | A(e), B(γ, e) | J = ±A ln((s + \|u̇\|)/√\|Δ\|) + \|u̇\|/(u + 0.28) B, a difference or a sum of two J |
 //! | weak | 27e²/4 < 0.64, u < 2/3 | v = u/e, `t = √(1 − e/e_c)` | V(v, t) | to the periapsis: \|u̇\|/(e + u) V |
 //! | trapped | 27e²/4 < 0.64, u > 2/3 | u, t | Z(u, t) | to the apoapsis: \|u̇\|/(u − 0.39) Z |
 //! | radial | 27e²/4 > 3 | u, 1/e² | H(u, 1/e²) | difference of two H, over e |
@@ -16,23 +16,24 @@
 //!
 //! # Derivation
 //! *Critical.* With `s = |u − 2/3| √(u + 1/3)` and its signed form `σ`, `P = σ² + Δ`. Near the photon sphere the
-//! integrand is an analytic function of σ over `√(σ² + Δ)`, so that term by term `∫ du/√P = A asinh(σ/√Δ) + √P B/γ²`,
-//! with A and B analytic in Δ through zero: **the critical line is no singularity of either**. (For Δ < 0 read `±
-//! acosh(|σ|/√−Δ)`; both are `± ln((s + |u̇|)/√|Δ|)`.) B/γ² has its nearest singularity at the root u1 ≈ −1/3, a pole
-//! in γ near γ = 0; the factor γ² takes the most of it out. As functions of e both are singular at e = 0 only.
+//! integrand is an analytic function of σ over `√(σ² + Δ)`, so that term by term
+//! `∫ du/√P = A asinh(σ/√Δ) + √P B/(u + 0.28)`, with A and B analytic in Δ through zero: **the critical line is no
+//! singularity of either**. (For Δ < 0 read `± acosh(|σ|/√−Δ)`; both are `± ln((s + |u̇|)/√|Δ|)`.) B/(u + 0.28) is
+//! singular next at the root u1, a pole in √(u − u1), with u1 between −0.273 and −1/3 where Δ < 0; the factor u + 0.28
+//! takes the most of it out. As functions of e both are singular at e = 0 only.
 //!
 //! B itself comes from a power series. With the cubic's lone root u1, p the mean of the other two, `c = p − u1`, `y =
 //! (u − p)/c`, `m = (1 − c⁻²)/3`: `√c ∫ du/√P = ∫ dy/(√(1 + y) √(y² + m)) = A₁ asinh(y/√m) + √(y² + m) Σ bₙ yⁿ`.
 //! Differentiated, with `aₙ = binom(−½, n)`: `n bₙ₋₁ + m (n + 1) bₙ₊₁ = aₙ` and `A₁ = 1 − m b₁`; solved downwards
 //! from n = 140, where the recurrence is stable. So `A = A₁/√c`, and with the difference of the two logarithms,
-//! `asinh(|u̇| ν)`, `B = γ² (Σ bₙ yⁿ / (c √(c (u − u1))) + A asinh(|u̇| ν)/|u̇|)`, where, with `x = u − 2/3`, `d = c
-//! − 1`, `ν = 9 (2x/(3(√(u − u1) + γ)) − √(u − u1)/3) / (√(u − u1) (3 + 2d) √(2(2 + d)))`: no term of it is small or
-//! large anywhere near the critical line, where the orbit's own logarithm is infinite.
+//! `asinh(|u̇| ν)`, `B = (u + 0.28) (Σ bₙ yⁿ / (c √(c (u − u1))) + A asinh(|u̇| ν)/|u̇|)`, where, with `x = u − 2/3`,
+//! `d = c − 1`, `ν = 9 (2x/(3(√(u − u1) + γ)) − √(u − u1)/3) / (√(u − u1) (3 + 2d) √(2(2 + d)))`: no term of it is
+//! small or large anywhere near the critical line, where the orbit's own logarithm is infinite.
 //!
-//! *Weak* and *trapped*: the angle to the turning point is odd in u̇ and analytic in u̇², so over u̇ it is analytic in u, beyond the turning
-//! point too; its next singularity is the other turning point, for small e the mirrored one at v = −1, where a factor
-//! 1 + v makes a root of a pole; u − 0.39 does so for the trapped rays, whose next singularity is the periapsis at u2
-//! < 0.3963. In flat space `V = acos v √((1 + v)/(1 − v))`.
+//! *Weak* and *trapped*: the angle to the turning point is odd in u̇ and analytic in u̇², so over u̇ it is analytic in
+//! u, beyond the turning point too. Its next singularity is the other turning point, for small e the mirrored one at
+//! v = −1, where a factor 1 + v makes a root of a pole; u − 0.39 does so for the trapped rays, whose next singularity
+//! is the periapsis at u2 < 0.3963. In flat space `V = acos v √((1 + v)/(1 − v))`.
 //!
 //! *Radial*: `H = ∫₀ᵘ du/√(1 − u²(1 − u)/e²)` is analytic in u and 1/e², and gives short angles with small absolute error.
 
@@ -48,6 +49,9 @@ pub(crate) const UPPER_E2: f64 = 3.0 * CRITICAL_E2;
 
 /// Smallest u of the trapped chart: just below the apoapsis, which is at u3 = 0.87662 where e² is [`LOWER_E2`].
 pub(crate) const TRAPPED_U: f64 = 0.8766;
+
+/// Near −u1, which is 0.27292 where e² is [`LOWER_E2`] and 1/3 for the critical ray.
+pub(crate) const CRITICAL_POLE: f64 = 0.28;
 
 /// Near the largest periapsis u2 of the trapped chart's orbits, beyond the photon sphere: 0.39630 where e² is [`LOWER_E2`].
 pub(crate) const TRAPPED_POLE: f64 = 0.39;
@@ -121,7 +125,7 @@ impl CriticalRow {
         let slope2 = x * x * (1.0 + x) + self.delta;
         let over_slope = sum / (self.c * (self.c * from_u1).sqrt())
             + self.amplitude * self.log_difference(x, from_u1, slope2);
-        gamma * gamma * over_slope
+        (gamma * gamma - 1.0 / 3.0 + CRITICAL_POLE) * over_slope
     }
 
     /// `(asinh(y/√m) − asinh(σ/√Δ)) / |u̇|`.

@@ -64,8 +64,8 @@ fn remedy(path: &Path, force: bool) -> String {
     }
 }
 
-/// What to do about a file that is no usable table. One that is somebody else's is not to be written over unawares, unless
-/// it lies where a table is to be.
+/// What to do about a file that is no usable table. One that is somebody else's is not to be written over unawares,
+/// unless it lies where a table is to be.
 fn mend(path: &Path, problem: &FormatError) -> String {
     let kept = Spec::NAMES.iter().any(|name| default_path(name) == path);
     if *problem == FormatError::Foreign && !kept {

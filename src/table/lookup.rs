@@ -1,6 +1,6 @@
 //! Swept angles read from a table.
 
-use super::charts::{CRITICAL_B, LOWER_E2, TRAPPED_POLE, UPPER_E2};
+use super::charts::{CRITICAL_B, CRITICAL_POLE, LOWER_E2, TRAPPED_POLE, UPPER_E2};
 use super::logarithm::ln_ratio;
 use super::spec::{Axes, Spec};
 use super::spline::{Scale, Stencil, value, values_2d};
@@ -82,14 +82,13 @@ impl<'a> Lookup<'a> {
         angles.to_array()
     }
 
-    /// `A`, and at both points the smooth part of J, `(|u̇|/γ²) B`, and the argument of its logarithm, `s + |u̇|`.
+    /// `A`, and at both points the smooth part of J, `|u̇|/(u + 0.28) B`, and the argument of its logarithm, `s + |u̇|`.
     #[inline(always)]
     fn critical_parts(&self, orbit: &Orbit, points: Pair) -> (f64, [f64; 2], [f64; 2]) {
         let Pair { u, slope } = points;
         let rows = self.critical.orbit.stencil(orbit.e2.sqrt());
-        let gamma2 = u + 1.0 / 3.0;
-        let gamma = gamma2.sqrt();
-        let smooth = slope / gamma2 * self.critical.at(&rows, gamma);
+        let gamma = (u + 1.0 / 3.0).sqrt();
+        let smooth = slope / (u + CRITICAL_POLE) * self.critical.at(&rows, gamma);
         let s = ((u + u - 1.0) + (u - 1.0)).abs() * (gamma * (1.0 / 3.0));
         (
             value(self.amplitude, &rows),

@@ -114,7 +114,8 @@ impl Scale {
     }
 }
 
-/// Six times the uniform cubic B-spline's weights, at the share f of a cell; of one place, or of several side by side.
+/// Six times the uniform cubic B-spline's weights, at the share f of a cell; of one place, or of several side by
+/// side.
 #[inline(always)]
 fn weights<T>(f: T) -> [T; 4]
 where
