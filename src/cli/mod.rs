@@ -4,6 +4,7 @@
 //! done, 1 where it failed, 2 where the program was misused. A reader that closes the standard output ends the run
 //! quietly.
 
+mod explain;
 mod method;
 mod picture;
 mod progress;
@@ -73,6 +74,10 @@ enum Misuse {
         height: u32,
         source: crate::scene::SceneError,
     },
+    #[error("{0}")]
+    Tolerance(#[source] crate::scene::SceneError),
+    #[error("--{flag} is about isoradial curves, which only --method table draws")]
+    CurvesUnused { flag: &'static str },
     #[error("--integrate-tolerance says how well rays are integrated: it needs --method integrate")]
     ToleranceUnused,
     #[error(

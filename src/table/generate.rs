@@ -37,7 +37,7 @@ pub fn generate(spec: &Spec, progress: &Progress<'_>) -> Option<Table<Memory>> {
     let numbers = numbers(spec, &|| {
         progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
     });
-    let Measured { error, angles } = measure(spec, &Lookup::new(spec, &numbers));
+    let Measured { error, angles } = measure(spec, &Lookup::new(spec, &numbers, spec.tolerance));
     let metadata = Metadata {
         conventions: CONVENTIONS.into(),
         spec: spec.clone(),

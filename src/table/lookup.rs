@@ -20,6 +20,7 @@ pub struct Lookup<'a> {
     weak: Chart<'a>,
     trapped: Chart<'a>,
     radial: Chart<'a>,
+    error: f64,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -55,8 +56,8 @@ impl<'a> Chart<'a> {
 }
 
 impl<'a> Lookup<'a> {
-    /// The charts within `numbers`, which are exactly as many as `spec` says.
-    pub(crate) fn new(spec: &Spec, mut numbers: &'a [f64]) -> Self {
+    /// The charts within `numbers`, which are exactly as many as `spec` says; `error` is that of their angles.
+    pub(crate) fn new(spec: &Spec, mut numbers: &'a [f64], error: f64) -> Self {
         let (amplitude, rest) = numbers.split_at(spec.critical_axes().orbit.coefficients());
         numbers = rest;
         Self {
@@ -65,6 +66,7 @@ impl<'a> Lookup<'a> {
             weak: Chart::take(&mut numbers, spec.weak_axes()),
             trapped: Chart::take(&mut numbers, spec.trapped_axes()),
             radial: Chart::take(&mut numbers, spec.radial_axes()),
+            error,
         }
     }
 
@@ -116,6 +118,11 @@ impl Pair {
 }
 
 impl SweptAngles for Lookup<'_> {
+    /// As measured when the table was made.
+    fn error(&self) -> f64 {
+        self.error
+    }
+
     #[inline]
     fn direct(&self, orbit: &Orbit, from: Point, to: Point) -> f64 {
         if orbit.e2 > UPPER_E2 {
