@@ -36,6 +36,8 @@
 //! edges, and that choices made for 8 T break T.
 
 mod nodes;
+mod open;
+mod patch;
 mod piece;
 mod range;
 mod sight;
@@ -46,6 +48,8 @@ use core::f64::consts::{FRAC_PI_2, PI};
 use crate::orbit::path::SweptAngles;
 use nodes::Nodes;
 use piece::{Piece, thickness};
+pub use open::{Open, OpenBand, Patched};
+pub use patch::{Interval, Line, Patch};
 pub use range::{Bundle, Verdict};
 pub use sight::Sight;
 use solve::Target;
@@ -92,17 +96,19 @@ impl EdgeError {
 #[derive(Debug, Clone)]
 pub struct Isoradials {
     critical: f64,
+    /// Of each quarter turn, order by order, those that the picture shows.
+    quarters: [Vec<Piece>; 2],
     orders: Vec<Order>,
     left_out: Option<Thinness>,
     error: EdgeError,
 }
 
-/// The image of one order: two quarter turns, each where the picture shows it.
-#[derive(Debug, Clone)]
+/// The image of one order.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Order {
     number: u32,
     thickness: f64,
-    pieces: [Option<Piece>; 2],
+    nodes: usize,
 }
 
 /// The first order that was left out.
@@ -127,7 +133,7 @@ impl Order {
 
     /// How many nodes its curves have.
     pub fn nodes(&self) -> usize {
-        self.pieces.iter().flatten().map(Piece::nodes).sum()
+        self.nodes
     }
 }
 
@@ -137,6 +143,7 @@ impl Isoradials {
     pub fn new(sight: &Sight, angles: &impl SweptAngles) -> Self {
         let mut curves = Self {
             critical: sight.critical(),
+            quarters: [Vec::new(), Vec::new()],
             orders: Vec::new(),
             left_out: None,
             error: EdgeError::default(),
@@ -152,13 +159,16 @@ impl Isoradials {
                 break;
             }
             curves.error = curves.error.max(drawn.error(sight, angles.error()));
-            let pieces = drawn.pieces(sight);
+            let pieces = drawn.pieces(number, sight);
             if pieces.iter().any(Option::is_some) {
                 curves.orders.push(Order {
                     number,
                     thickness,
-                    pieces,
+                    nodes: pieces.iter().flatten().map(Piece::nodes).sum(),
                 });
+            }
+            for (quarter, piece) in curves.quarters.iter_mut().zip(pieces) {
+                quarter.extend(piece);
             }
         }
         curves
@@ -191,16 +201,15 @@ impl Isoradials {
 
     /// How many bytes a frame reads of the curves.
     pub fn bytes(&self) -> usize {
-        let pieces = self.orders.iter().flat_map(|order| &order.pieces);
-        pieces.flatten().map(Piece::bytes).sum()
+        self.quarters.iter().flatten().map(Piece::bytes).sum()
     }
 
     /// `κ − κ_c` of an edge's curve where the plane is met at `first`, φ₁ in [0, π], by the image of order `number`.
     /// None where no picture was asked for it.
     pub fn height(&self, number: u32, edge: Edge, first: f64) -> Option<f64> {
-        let order = self.orders.iter().find(|order| order.number == number)?;
         let (sine, cosine) = (libm::sin(first).abs(), libm::cos(first));
-        let piece = order.pieces[usize::from(cosine < 0.0)].as_ref()?;
+        let mut pieces = self.quarter(usize::from(cosine < 0.0)).iter();
+        let piece = pieces.find(|piece| piece.order == number)?;
         Some(piece.height(edge, place(sine, cosine)))
     }
 
@@ -210,7 +219,7 @@ impl Isoradials {
     pub fn meets(&self, z: f64, s: f64, n: f64, d: f64) -> bool {
         let excess = z - self.critical * s;
         let mut axis = None;
-        for piece in self.pieces(usize::from(d < 0.0)) {
+        for piece in self.quarter(usize::from(d < 0.0)) {
             if excess < piece.lowest * s || excess > piece.highest * s {
                 continue;
             }
@@ -224,10 +233,8 @@ impl Isoradials {
 
     /// The pieces of one quarter turn, order by order.
     #[inline]
-    fn pieces(&self, quarter: usize) -> impl Iterator<Item = &Piece> {
-        self.orders
-            .iter()
-            .filter_map(move |order| order.pieces[quarter].as_ref())
+    fn quarter(&self, quarter: usize) -> &[Piece] {
+        &self.quarters[quarter]
     }
 }
 
@@ -301,11 +308,11 @@ impl Drawn {
     }
 
     /// The pieces that the picture shows any ray of.
-    fn pieces(&self, sight: &Sight) -> [Option<Piece>; 2] {
+    fn pieces(&self, number: u32, sight: &Sight) -> [Option<Piece>; 2] {
         let (low, high) = sight.heights();
         self.0.each_ref().map(|pair| {
             pair.as_ref()
-                .map(|[inner, outer]| Piece::new(inner, outer))
+                .map(|[inner, outer]| Piece::new(number, inner, outer))
                 .filter(|piece| piece.lowest <= high && piece.highest >= low)
         })
     }

@@ -3,11 +3,13 @@
 use super::Edge;
 use super::nodes::Nodes;
 use super::sight::Sight;
-use crate::table::spline::{Scale, Stencil, bounds, value};
+use crate::table::spline::{Scale, Stencil, bounds, jet, value};
 
 /// A quarter turn of both curves, as splines in x of `h` (or `x h` where h has a pole).
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
+    /// The image's order.
+    pub(super) order: u32,
     axis: Scale,
     /// Whether h has a pole at x = 0, and `x h` is kept.
     pole: bool,
@@ -21,10 +23,11 @@ pub(super) struct Piece {
 
 impl Piece {
     /// The piece between two curves drawn over the same x, on as many nodes as the finer one has.
-    pub(super) fn new(inner: &Nodes, outer: &Nodes) -> Self {
+    pub(super) fn new(order: u32, inner: &Nodes, outer: &Nodes) -> Self {
         let count = inner.count().max(outer.count());
         let finer = if inner.count() == count { inner } else { outer };
         let mut piece = Self {
+            order,
             axis: Scale::new(finer.axis()),
             pole: finer.quarter.pole,
             inner: inner.spline(count),
@@ -57,12 +60,26 @@ impl Piece {
     /// h of one edge at x.
     pub(super) fn height(&self, edge: Edge, x: f64) -> f64 {
         let stencil: Stencil = self.axis.stencil(x);
-        let coefficients = match edge {
+        let kept = value(self.spline(edge), &stencil);
+        if self.pole { kept / x } else { kept }
+    }
+
+    /// Value and slope of one edge's spline at x, and the largest size of its second derivative within `reach`.
+    #[inline]
+    pub(super) fn jet(&self, edge: Edge, x: f64, reach: f64) -> (f64, f64, f64) {
+        jet(self.spline(edge), self.axis, x, reach)
+    }
+
+    /// Whether the spline is of `x h` in place of h, which has a pole at 0.
+    pub(super) fn has_pole(&self) -> bool {
+        self.pole
+    }
+
+    fn spline(&self, edge: Edge) -> &[f64] {
+        match edge {
             Edge::Inner => &self.inner,
             Edge::Outer => &self.outer,
-        };
-        let kept = value(coefficients, &stencil);
-        if self.pole { kept / x } else { kept }
+        }
     }
 
     /// How many nodes both curves have together.

@@ -122,7 +122,7 @@ impl Isoradials {
 
     fn quarter_verdict(&self, quarter: usize, h: (f64, f64), x: (f64, f64)) -> Verdict {
         let mut verdict = Verdict::Miss;
-        for piece in self.pieces(quarter) {
+        for piece in self.quarter(quarter) {
             if h.1 < piece.lowest || h.0 > piece.highest {
                 continue;
             }

@@ -2,21 +2,13 @@
 
 use rayon::prelude::*;
 
+use super::tiles::{Band, Filler, TILE, Tile};
 use super::{RenderError, blank};
-use crate::isoradial::{Bundle, Isoradials, Verdict};
+use crate::isoradial::Isoradials;
 use crate::scene::View;
 
 /// White: the disk.
 pub const WHITE: u8 = 255;
-
-/// The side of the largest tiles, in pixels; [`SPLIT`]² of the next smaller ones fill each.
-const TILE: usize = 64;
-
-/// Into how many tiles a tile is split along each side.
-const SPLIT: usize = 4;
-
-/// The side of the smallest tiles: below it each pixel is asked by itself.
-const SMALLEST: usize = 4;
 
 /// The frame's pixels, row by row from the top, on all threads of the current rayon pool.
 ///
@@ -26,14 +18,25 @@ const SMALLEST: usize = 4;
 /// # Errors
 /// [`RenderError::Memory`]
 pub fn render(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> {
-    let frame = Frame::new(view, curves);
+    let sample = Sample::new(view, curves);
+    let filler = Filler {
+        view,
+        curves,
+        reach: 0.0,
+        pixel: |column: usize, row: usize| sample.at(column, row),
+    };
     let width = view.width() as usize;
     let mut pixels = blank(view)?;
     pixels
         .par_chunks_mut(width * TILE)
         .enumerate()
-        .for_each(|(band, rows)| {
-            let height = rows.len() / width;
+        .for_each(|(index, pixels)| {
+            let height = pixels.len() / width;
+            let mut band = Band {
+                pixels,
+                stride: width,
+                first: index * TILE,
+            };
             for left in (0..width).step_by(TILE) {
                 let tile = Tile {
                     left,
@@ -41,7 +44,7 @@ pub fn render(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> 
                     width: TILE.min(width - left),
                     height,
                 };
-                frame.fill(rows, band * TILE, tile, TILE);
+                filler.fill(&mut band, tile, None);
             }
         });
     Ok(pixels)
@@ -52,38 +55,22 @@ pub fn render(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> 
 /// # Errors
 /// [`RenderError::Memory`]
 pub fn render_every_pixel(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> {
-    let frame = Frame::new(view, curves);
+    let sample = Sample::new(view, curves);
     let width = view.width() as usize;
     let mut pixels = blank(view)?;
     pixels
         .par_chunks_exact_mut(width)
         .enumerate()
-        .for_each(|(j, row)| {
-            frame.fill_pixels(
-                row,
-                j,
-                Tile {
-                    left: 0,
-                    top: 0,
-                    width,
-                    height: 1,
-                },
-            );
+        .for_each(|(row, pixels)| {
+            for (column, pixel) in pixels.iter_mut().enumerate() {
+                *pixel = sample.at(column, row);
+            }
         });
     Ok(pixels)
 }
 
-/// A rectangle of pixels; `top` counts from the first row of its band.
-#[derive(Debug, Clone, Copy)]
-struct Tile {
-    left: usize,
-    top: usize,
-    width: usize,
-    height: usize,
-}
-
-/// What all pixels of a frame share.
-struct Frame<'a> {
+/// What the centres of pixels see.
+struct Sample<'a> {
     view: &'a View,
     curves: &'a Isoradials,
     /// N over s.
@@ -92,7 +79,7 @@ struct Frame<'a> {
     n_a: f64,
 }
 
-impl<'a> Frame<'a> {
+impl<'a> Sample<'a> {
     fn new(view: &'a View, curves: &'a Isoradials) -> Self {
         Self {
             view,
@@ -102,70 +89,22 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Fills a tile of side `side` or less; `rows` are those of its band, which begins at row `first_row` of the
-    /// frame.
-    fn fill(&self, rows: &mut [u8], first_row: usize, tile: Tile, side: usize) {
-        let (left, top) = (tile.left as f64, (first_row + tile.top) as f64);
-        let columns = (left, left + tile.width as f64);
-        let rows_of_tile = (top, top + tile.height as f64);
-        let verdict = Bundle::new(self.view, columns, rows_of_tile)
-            .map_or(Verdict::Mixed, |bundle| self.curves.verdict(&bundle));
-        let width = self.view.width() as usize;
-        match verdict {
-            // The pixels are black to begin with.
-            Verdict::Miss => {}
-            Verdict::Hit => {
-                for row in rows
-                    .chunks_exact_mut(width)
-                    .skip(tile.top)
-                    .take(tile.height)
-                {
-                    row[tile.left..tile.left + tile.width].fill(WHITE);
-                }
-            }
-            Verdict::Mixed if side <= SMALLEST => self.fill_pixels(rows, first_row, tile),
-            Verdict::Mixed => {
-                let side = side / SPLIT;
-                for top in (tile.top..tile.top + tile.height).step_by(side) {
-                    for left in (tile.left..tile.left + tile.width).step_by(side) {
-                        let width = side.min(tile.left + tile.width - left);
-                        let height = side.min(tile.top + tile.height - top);
-                        self.fill(
-                            rows,
-                            first_row,
-                            Tile {
-                                left,
-                                top,
-                                width,
-                                height,
-                            },
-                            side,
-                        );
-                    }
-                }
-            }
-        }
-    }
-
-    fn fill_pixels(&self, rows: &mut [u8], first_row: usize, tile: Tile) {
-        let (z, ta, tb) = (self.view.z(), self.view.ta(), self.view.tb());
-        let width = self.view.width() as usize;
-        for (j, row) in rows
-            .chunks_exact_mut(width)
-            .enumerate()
-            .skip(tile.top)
-            .take(tile.height)
+    /// The value of a pixel.
+    #[inline]
+    fn at(&self, column: usize, row: usize) -> u8 {
+        let x = self.view.x_at(column as f64 + 0.5);
+        let y = self.view.y_at(row as f64 + 0.5);
+        let ray = self.view.ray_at(x, y);
+        let s = ray.transverse();
+        // Straight at the hole or away from it: no plane, no disk.
+        if s > 0.0
+            && self
+                .curves
+                .meets(ray.z, s, self.n_p * s, self.n_a * ray.ta)
         {
-            let y = self.view.y_at((first_row + j) as f64 + 0.5);
-            for (i, pixel) in row.iter_mut().enumerate().skip(tile.left).take(tile.width) {
-                let x = self.view.x_at(i as f64 + 0.5);
-                let (z, ta, tb) = (z.at(x, y), ta.at(x, y), tb.at(x, y));
-                let s = (ta * ta + tb * tb).sqrt();
-                // Straight at the hole or away from it: no plane, no disk.
-                if s > 0.0 && self.curves.meets(z, s, self.n_p * s, self.n_a * ta) {
-                    *pixel = WHITE;
-                }
-            }
+            WHITE
+        } else {
+            0
         }
     }
 }

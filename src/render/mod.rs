@@ -4,6 +4,7 @@ pub mod mask;
 pub mod needs;
 pub mod pixelwise;
 pub mod png;
+mod tiles;
 
 use crate::orbit::OrbitError;
 use crate::scene::View;

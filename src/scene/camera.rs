@@ -211,6 +211,11 @@ impl View {
         self.height
     }
 
+    /// The side of a pixel in X and Y.
+    pub fn pixel_side(&self) -> f64 {
+        2.0 * self.half_pixel
+    }
+
     /// X at `column` pixels from the picture's left edge, `(2 column − W) tan(fov/2)/H`; pixel i's centre is at
     /// `i + ½`, its sides are at i and `i + 1`. `x_at(W − column)` is exactly `−x_at(column)`.
     pub fn x_at(&self, column: f64) -> f64 {

@@ -156,6 +156,33 @@ pub(crate) fn bounds(coefficients: &[f64], axis: Scale, x: (f64, f64)) -> (f64, 
     (ends.0.min(ends.1) - margin, ends.0.max(ends.1) + margin)
 }
 
+/// A spline's value and slope at x, and the largest size of its second derivative within `reach` of x: that is linear
+/// within each cell, between the coefficients' second differences.
+#[inline]
+pub(crate) fn jet(coefficients: &[f64], axis: Scale, x: f64, reach: f64) -> (f64, f64, f64) {
+    let t = (x - axis.start) * axis.per_unit;
+    let cell = axis.cell(t);
+    let first = cell as usize;
+    let f = t - f64::from(cell);
+    let g = 1.0 - f;
+    let c = &coefficients[first..first + 4];
+    let stencil = Stencil {
+        first,
+        weights: weights(f),
+    };
+    let slope = (f * f * c[3] - g * g * c[0]) + (g * (4.0 - 3.0 * g) * c[2] - f * (4.0 - 3.0 * f) * c[1]);
+    let cells = reach * axis.per_unit;
+    let (low, high) = (axis.cell(t - cells) as usize, axis.cell(t + cells) as usize);
+    let bend = coefficients[low..high + 4]
+        .windows(3)
+        .fold(0.0, |bend: f64, c| bend.max((c[0] - 2.0 * c[1] + c[2]).abs()));
+    (
+        value(coefficients, &stencil),
+        3.0 * slope * axis.per_unit,
+        6.0 * bend * axis.per_unit * axis.per_unit,
+    )
+}
+
 /// The values at two places of a spline of two variables, stored row by row: `rows` along the slow axis, `columns`
 /// along the fast one.
 #[inline(always)]
@@ -294,6 +321,30 @@ mod tests {
                     (got - cubic(x)).abs() < 1e-12,
                     "{nodes} nodes at {x}: {got}"
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn jets_are_the_splines_derivatives() {
+        let axis = Scale::new(Axis {
+            start: -1.0,
+            end: 2.0,
+            nodes: 9,
+        });
+        let values: Vec<f64> = (0..9).map(|i| libm::sin(f64::from(i * i))).collect();
+        let c = coefficients(&values);
+        let at = |x: f64| value(&c, &axis.stencil(x));
+        for k in 1..60 {
+            let x = -1.0 + f64::from(k) * 0.05 + 0.01;
+            let (height, slope, bend) = jet(&c, axis, x, 0.07);
+            assert_eq!(height, at(x));
+            let (before, after) = (at(x - 1e-4), at(x + 1e-4));
+            assert!((slope - (after - before) / 2e-4).abs() < 1e-6, "{slope} at {x}");
+            for j in -7..=7 {
+                let y = x + f64::from(j) * 0.0099;
+                let second = (at(y - 1e-3) - 2.0 * at(y) + at(y + 1e-3)) / 1e-6;
+                assert!(second.abs() <= bend * (1.0 + 1e-6) + 1e-6, "{second} over {bend} at {y}");
             }
         }
     }

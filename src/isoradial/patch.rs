@@ -1,0 +1,292 @@
+//! Curves over a small rectangle of the picture: linear in its pixels, with a bound on what is not.
+//!
+//! # Derivation
+//! A ray is on an edge's curve where `g = z − κ s = 0`, `κ = κ_c + h(x)`; g > 0 on the curve's side of the hole. z and
+//! the transverse parts `t_a`, `t_b` are affine in the picture's coordinates; with `(c_a, c_b) = (t_a, t_b)/s` and a
+//! derivative along either coordinate written `∂`,
+//!
+//! ```text
+//! ∂s = c_a ∂t_a + c_b ∂t_b
+//! ∂c_a = c_b (c_b ∂t_a − c_a ∂t_b)/s
+//! ∂x = −|n_p| D₁/(|n_p| + |D₁ c_a|)² ∂c_a          N = |n_p| s, D = D₁ c_a s
+//! ∂g = ∂z − κ ∂s − s h′ ∂x
+//! ```
+//!
+//! In the third line both quarter turns are alike: `x = N/(N + D)` and `|D|/(N + |D|)`. Over a rectangle whose t lie
+//! within ρ of the one at its centre, `c_a` and `c_b` are within `ρ/(s − ρ)` of theirs; the rest follows by adding and
+//! multiplying intervals, each its middle and its radius. By the mean value theorem g is then its value at the centre
+//! plus the gradient's interval times the way from there: an interval whose width beyond the linear part falls with
+//! the square of the rectangle's size (Moore, Kearfott & Cloud 2009, *Introduction to Interval Analysis*, §6.4).
+
+use super::piece::Piece;
+use super::{Edge, Isoradials};
+use crate::scene::{Affine, View};
+
+/// The rays of a rectangle of the picture that meet the disk's plane in one and the same quarter turn.
+#[derive(Debug, Clone, Copy)]
+pub struct Patch {
+    /// Which quarter turn, 0 or 1.
+    quarter: usize,
+    /// At the centre: `z`, `z − κ_c s`, s, x.
+    z: f64,
+    excess: f64,
+    s: f64,
+    x: f64,
+    /// How far x is from the centre's at most.
+    reach: f64,
+    /// Of z, along columns and rows.
+    slope: [f64; 2],
+    /// `∂s`.
+    along: [Interval; 2],
+    /// `−s ∂x`.
+    turning: [Interval; 2],
+}
+
+/// `g` of one edge over a patch: `value + per_column dx + per_row dy`, each with an error of its own; dx and dy in
+/// pixels from the centre.
+#[derive(Debug, Clone, Copy)]
+pub struct Line {
+    /// At the centre.
+    pub value: Interval,
+    /// For each pixel to the right.
+    pub per_column: Interval,
+    /// For each pixel downwards.
+    pub per_row: Interval,
+}
+
+/// The numbers within `radius` of `middle`.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Interval {
+    /// Its middle.
+    pub middle: f64,
+    /// Half its width.
+    pub radius: f64,
+}
+
+/// Share of its terms by which a value may be off through rounding: some ε of each, with room.
+const ROUNDING: f64 = 1e-13;
+
+impl Interval {
+    fn times(self, other: Self) -> Self {
+        let (a, b) = (self.middle.abs(), other.middle.abs());
+        Self {
+            middle: self.middle * other.middle,
+            radius: a * other.radius + self.radius * (b + other.radius),
+        }
+    }
+
+    fn scaled(self, factor: f64) -> Self {
+        Self {
+            middle: self.middle * factor,
+            radius: self.radius * factor.abs(),
+        }
+    }
+
+    /// The largest size of a number in it.
+    pub fn most(self) -> f64 {
+        self.middle.abs() + self.radius
+    }
+}
+
+impl Patch {
+    /// The rays of a rectangle of the picture, its sides in pixels from the left and from the top. None where they
+    /// are in both quarter turns, or all about the hole's direction or the one away from it.
+    #[inline]
+    pub fn new(
+        view: &View,
+        curves: &Isoradials,
+        columns: (f64, f64),
+        rows: (f64, f64),
+    ) -> Option<Self> {
+        let (z, ta, tb) = (view.z(), view.ta(), view.tb());
+        let (x, y) = (
+            view.x_at(0.5 * (columns.0 + columns.1)),
+            view.y_at(0.5 * (rows.0 + rows.1)),
+        );
+        let pixel = view.pixel_side();
+        let (half_x, half_y) = (
+            0.5 * pixel * (columns.1 - columns.0),
+            0.5 * pixel * (rows.1 - rows.0),
+        );
+        let reach = |affine: Affine| (affine.per_x * half_x).abs() + (affine.per_y * half_y).abs();
+        let (z_centre, a, b) = (z.at(x, y), ta.at(x, y), tb.at(x, y));
+        let s = (a * a + b * b).sqrt();
+        let (reach_a, reach_b) = (reach(ta), reach(tb));
+        let radius = (reach_a * reach_a + reach_b * reach_b).sqrt();
+        if radius >= 0.5 * s {
+            return None;
+        }
+        let inverse = 1.0 / s;
+        let spread = radius / (s - radius) + 4.0 * f64::EPSILON;
+        let (ca, cb) = (
+            Interval {
+                middle: a * inverse,
+                radius: spread,
+            },
+            Interval {
+                middle: b * inverse,
+                radius: spread,
+            },
+        );
+        let (n, d) = (view.n_p().abs(), view.plane_slope());
+        // |D|/s, and how far it is from 0.
+        let size = (d * ca.middle).abs();
+        let least = size - d.abs() * spread;
+        if least <= 0.0 && d != 0.0 {
+            return None;
+        }
+        let quarter = usize::from(d * ca.middle < 0.0);
+        let (near, middle, far) = (
+            n + least.max(0.0),
+            n + size,
+            n + (size + d.abs() * spread).min(d.abs()),
+        );
+        if near <= 0.0 {
+            return None;
+        }
+        let share = if quarter == 0 {
+            n / middle
+        } else {
+            size / middle
+        };
+        // N D₁/(N + |D|)² between its ends; x changes by it times the change of c_a.
+        let factor = n * d;
+        let (most, less) = (factor / (near * near), factor / (far * far));
+        let factor = Interval {
+            middle: 0.5 * (most + less),
+            radius: 0.5 * (most - less).abs() + ROUNDING * most.abs(),
+        };
+        let derivatives = |per_a: f64, per_b: f64| {
+            let along = Interval {
+                middle: ca.middle * per_a + cb.middle * per_b,
+                radius: spread * (per_a.abs() + per_b.abs()),
+            };
+            let across = Interval {
+                middle: cb.middle * per_a - ca.middle * per_b,
+                radius: spread * (per_a.abs() + per_b.abs()),
+            };
+            (along, factor.times(cb).times(across))
+        };
+        // Rows count downwards, Y upwards.
+        let (along_x, turning_x) = derivatives(ta.per_x * pixel, tb.per_x * pixel);
+        let (along_y, turning_y) = derivatives(-ta.per_y * pixel, -tb.per_y * pixel);
+        Some(Self {
+            quarter,
+            z: z_centre,
+            excess: z_centre - curves.critical() * s,
+            s,
+            x: share,
+            reach: if n > 0.0 {
+                factor.most() * spread + ROUNDING
+            } else {
+                0.0
+            },
+            slope: [z.per_x * pixel, -z.per_y * pixel],
+            along: [along_x, along_y],
+            turning: [turning_x, turning_y],
+        })
+    }
+
+    /// Which quarter turn, 0 or 1.
+    pub fn quarter(&self) -> usize {
+        self.quarter
+    }
+
+    /// One edge of one piece of [`Self::quarter`], over the patch.
+    #[inline]
+    pub(super) fn line(&self, piece: &Piece, edge: Edge, critical: f64) -> Line {
+        let (h, slope) = piece.height_and_slope(edge, self.x, self.reach);
+        if h.middle.is_infinite() {
+            // The camera stands in the disk's plane: at φ = 0 the ray is on one side of every curve, whatever it is.
+            return Line {
+                value: Interval {
+                    middle: -h.middle,
+                    radius: 0.0,
+                },
+                per_column: Interval::default(),
+                per_row: Interval::default(),
+            };
+        }
+        let kappa = Interval {
+            middle: critical + h.middle,
+            radius: h.radius,
+        };
+        let gradient = |i: usize| {
+            let (turned, turning) = (kappa.times(self.along[i]), slope.times(self.turning[i]));
+            Interval {
+                middle: self.slope[i] - turned.middle + turning.middle,
+                radius: turned.radius + turning.radius,
+            }
+        };
+        let terms = self.z.abs() + self.s * (critical.abs() + h.middle.abs());
+        Line {
+            value: Interval {
+                middle: self.excess - self.s * h.middle,
+                radius: ROUNDING * terms,
+            },
+            per_column: gradient(0),
+            per_row: gradient(1),
+        }
+    }
+}
+
+impl Line {
+    /// `−g`.
+    pub fn opposite(&self) -> Self {
+        let opposite = |interval: Interval| Interval {
+            middle: -interval.middle,
+            ..interval
+        };
+        Self {
+            value: opposite(self.value),
+            per_column: opposite(self.per_column),
+            per_row: opposite(self.per_row),
+        }
+    }
+
+    /// Bounds over the patch of `half` so many pixels to either side.
+    #[inline]
+    pub fn bounds(&self, half: (f64, f64)) -> (f64, f64) {
+        let radius =
+            self.value.radius + self.per_column.most() * half.0 + self.per_row.most() * half.1;
+        (self.value.middle - radius, self.value.middle + radius)
+    }
+}
+
+impl Piece {
+    /// h at x, and h′ within `reach` of x; the radius of h is that of the whole way.
+    #[inline]
+    fn height_and_slope(&self, edge: Edge, x: f64, reach: f64) -> (Interval, Interval) {
+        let (value, slope, bend) = self.jet(edge, x, reach);
+        let slope = Interval {
+            middle: slope,
+            radius: bend * reach,
+        };
+        let value = Interval {
+            middle: value,
+            radius: slope.most() * reach,
+        };
+        if !self.has_pole() {
+            return (value, slope);
+        }
+        // h = f/x, h′ = (f′ − h)/x.
+        let least = x - reach;
+        if least <= 0.0 {
+            let unknown = Interval {
+                middle: value.middle / x,
+                radius: f64::INFINITY,
+            };
+            return (unknown, unknown);
+        }
+        let inverse = Interval {
+            middle: 1.0 / x,
+            radius: reach / (x * least),
+        };
+        let height = value.times(inverse);
+        let rise = Interval {
+            middle: slope.middle - height.middle,
+            radius: slope.radius + height.radius,
+        };
+        (height, rise.times(inverse))
+    }
+}

@@ -1,0 +1,238 @@
+//! Where a frame changes: tiles that are wholly within the disk or wholly off it are found and filled, what is left are
+//! the pixels along its edges.
+//!
+//! A tile is bounded as a [`Patch`] (whose page derives the bound); where that decides nothing it is split, and only
+//! the edges that were open over it are looked at again. In tiles so small that what is not linear in their pixels is
+//! a small share of a pixel, each row of pixels is cut at the edges' lines: into pixels that are decided for certain,
+//! and those that are asked one by one.
+
+use crate::isoradial::{Bundle, Isoradials, Line, Open, Patch, Patched, Verdict};
+use crate::render::mask::WHITE;
+use crate::scene::View;
+
+/// The side of the largest tiles, in pixels.
+pub(super) const TILE: usize = 64;
+
+/// The side of the smallest tiles.
+const SMALLEST: usize = 4;
+
+/// A tile is cut into rows where what is not linear of its edges is below this, in pixels.
+const STRAIGHT: f64 = 0.3;
+
+/// A band of a frame's rows.
+pub(super) struct Band<'a> {
+    /// Their pixels.
+    pub(super) pixels: &'a mut [u8],
+    /// From one row to the next.
+    pub(super) stride: usize,
+    /// The first row's place in the frame.
+    pub(super) first: usize,
+}
+
+/// A rectangle of a band's pixels.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tile {
+    pub(super) left: usize,
+    pub(super) top: usize,
+    pub(super) width: usize,
+    pub(super) height: usize,
+}
+
+/// How a frame is filled.
+pub(super) struct Filler<'a, P> {
+    pub(super) view: &'a View,
+    pub(super) curves: &'a Isoradials,
+    /// How far from its centre a pixel looks to either side, in pixels: 0 for what its centre sees.
+    pub(super) reach: f64,
+    /// The value of the pixel (column, row) of the frame.
+    pub(super) pixel: P,
+}
+
+impl<P: Fn(usize, usize) -> u8> Filler<'_, P> {
+    /// Fills a tile of a band, all of whose pixels are black.
+    pub(super) fn fill(&self, band: &mut Band<'_>, tile: Tile, before: Option<&Open>) {
+        let top = band.first + tile.top;
+        let columns = (tile.left as f64, (tile.left + tile.width) as f64);
+        let rows = (top as f64, (top + tile.height) as f64);
+        let half = (0.5 * tile.width as f64, 0.5 * tile.height as f64);
+        let Some(patch) = Patch::new(self.view, self.curves, columns, rows) else {
+            return self.fill_bundle(band, tile, columns, rows);
+        };
+        match self.curves.patched(&patch, half, before) {
+            Patched::Miss => {}
+            Patched::Hit => band.whiten(tile),
+            Patched::Open(open) => {
+                if self.is_straight(&open, half) {
+                    self.cut(band, tile, &open);
+                } else if tile.width.max(tile.height) <= SMALLEST {
+                    self.ask(band, tile);
+                } else {
+                    self.split(band, tile, Some(&open));
+                }
+            }
+        }
+    }
+
+    /// Fills a tile whose rays are in both quarter turns, or all about the hole's direction.
+    fn fill_bundle(&self, band: &mut Band<'_>, tile: Tile, columns: (f64, f64), rows: (f64, f64)) {
+        let bundle = Bundle::new(self.view, columns, rows);
+        match bundle.map_or(Verdict::Mixed, |bundle| self.curves.verdict(&bundle)) {
+            Verdict::Miss => {}
+            Verdict::Hit => band.whiten(tile),
+            Verdict::Mixed if tile.width.max(tile.height) <= SMALLEST => self.ask(band, tile),
+            Verdict::Mixed => self.split(band, tile, None),
+        }
+    }
+
+    fn split(&self, band: &mut Band<'_>, tile: Tile, open: Option<&Open>) {
+        // Halves, the first of them rounded up to a power of two.
+        let half = |side: usize| side.next_power_of_two() / 2;
+        let (width, height) = (half(tile.width).max(1), half(tile.height).max(1));
+        for top in (tile.top..tile.top + tile.height).step_by(height) {
+            for left in (tile.left..tile.left + tile.width).step_by(width) {
+                let part = Tile {
+                    left,
+                    top,
+                    width: width.min(tile.left + tile.width - left),
+                    height: height.min(tile.top + tile.height - top),
+                };
+                self.fill(band, part, open);
+            }
+        }
+    }
+
+    /// Whether every open edge is nearly a straight line over its tile.
+    fn is_straight(&self, open: &Open, half: (f64, f64)) -> bool {
+        let straight = |line: &Line| {
+            let bend = line.per_column.radius * half.0 + line.per_row.radius * half.1;
+            // The gradient's larger part is its length, but for a factor of √2.
+            let gradient = line.per_column.middle.abs().max(line.per_row.middle.abs());
+            bend <= STRAIGHT * gradient
+        };
+        open.bands()
+            .iter()
+            .flat_map(|band| [&band.inner, &band.outer])
+            .flatten()
+            .all(straight)
+    }
+
+    /// Cuts each row of a tile at its open edges.
+    fn cut(&self, band: &mut Band<'_>, tile: Tile, open: &Open) {
+        let (half_width, half_height) = (0.5 * tile.width as f64, 0.5 * tile.height as f64);
+        for j in 0..tile.height {
+            let dy = j as f64 + 0.5 - half_height;
+            let cuts = |line: &Line| Cut::new(line, dy, half_width, half_height, self.reach);
+            let row = band.row(tile.top + j, tile.left, tile.width);
+            let mut possible: [(usize, usize); 12] = [(0, 0); 12];
+            for (possible, band) in possible.iter_mut().zip(open.bands()) {
+                let (mut certain, mut perhaps) = ((0, tile.width), (0, tile.width));
+                // Within the band is g ≥ 0 at its outer edge and g ≤ 0 at its inner one.
+                if let Some(line) = &band.outer {
+                    cuts(line).keep_positive(tile.width, &mut certain, &mut perhaps);
+                }
+                if let Some(line) = &band.inner {
+                    cuts(&line.opposite()).keep_positive(tile.width, &mut certain, &mut perhaps);
+                }
+                if certain.0 < certain.1 {
+                    row[certain.0..certain.1].fill(WHITE);
+                }
+                *possible = perhaps;
+            }
+            let y = band.first + tile.top + j;
+            for &(from, to) in &possible[..open.bands().len()] {
+                for i in from..to {
+                    if row[i] != WHITE {
+                        row[i] = (self.pixel)(tile.left + i, y);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Asks every pixel of a tile.
+    fn ask(&self, band: &mut Band<'_>, tile: Tile) {
+        for j in 0..tile.height {
+            let y = band.first + tile.top + j;
+            let row = band.row(tile.top + j, tile.left, tile.width);
+            for (i, pixel) in row.iter_mut().enumerate() {
+                *pixel = (self.pixel)(tile.left + i, y);
+            }
+        }
+    }
+}
+
+impl Band<'_> {
+    fn row(&mut self, row: usize, left: usize, width: usize) -> &mut [u8] {
+        &mut self.pixels[row * self.stride + left..][..width]
+    }
+
+    fn whiten(&mut self, tile: Tile) {
+        for row in tile.top..tile.top + tile.height {
+            self.row(row, tile.left, tile.width).fill(WHITE);
+        }
+    }
+}
+
+/// Where in a row `|slope dx + value| ≤ doubt`.
+#[derive(Debug, Clone, Copy)]
+struct Cut {
+    value: f64,
+    slope: f64,
+    doubt: f64,
+    half: f64,
+}
+
+impl Cut {
+    fn new(line: &Line, dy: f64, half_width: f64, half_height: f64, reach: f64) -> Self {
+        Self {
+            value: line.value.middle + line.per_row.middle * dy,
+            slope: line.per_column.middle,
+            doubt: line.value.radius
+                + line.per_column.radius * half_width
+                + line.per_row.radius * half_height
+                + reach * (line.per_column.most() + line.per_row.most()),
+            half: half_width,
+        }
+    }
+
+    /// Keeps of two ranges of the row's pixels those that are certainly on the positive side, and those that may be.
+    fn keep_positive(
+        self,
+        width: usize,
+        certain: &mut (usize, usize),
+        perhaps: &mut (usize, usize),
+    ) {
+        // g ≥ slope dx + value − doubt at dx = i + ½ − half.
+        let (certainly, maybe) = (self.value - self.doubt, self.value + self.doubt);
+        if self.slope == 0.0 {
+            if !(certainly >= 0.0) {
+                *certain = (0, 0);
+            }
+            if maybe < 0.0 {
+                *perhaps = (0, 0);
+            }
+            return;
+        }
+        let inverse = 1.0 / self.slope;
+        // The pixel, as a real number, at which each bound is 0; rounding moves it by far less than this.
+        const ROUNDING: f64 = 1e-6;
+        let (at_certain, at_maybe) = (
+            self.half - 0.5 - certainly * inverse,
+            self.half - 0.5 - maybe * inverse,
+        );
+        let most = width as f64;
+        // The number of pixels below a place: its ceiling.
+        let below = |place: f64| {
+            let place = place.max(0.0).min(most);
+            let whole = place as usize;
+            whole + usize::from(whole as f64 != place)
+        };
+        if self.slope > 0.0 {
+            certain.0 = certain.0.max(below(at_certain + ROUNDING));
+            perhaps.0 = perhaps.0.max(below(at_maybe - ROUNDING));
+        } else {
+            certain.1 = certain.1.min(below(at_certain - ROUNDING));
+            perhaps.1 = perhaps.1.min(below(at_maybe + ROUNDING));
+        }
+    }
+}
