@@ -97,7 +97,8 @@ fn from_photon_sphere(u: f64) -> f64 {
 fn newton(mut x: f64, mut step: impl FnMut(f64) -> f64) -> f64 {
     for _ in 0..100 {
         let next = x - step(x);
-        if (next - x).abs() <= f64::EPSILON * next.abs() {
+        // The last steps go to and fro between neighbours.
+        if (next - x).abs() <= 2.0 * f64::EPSILON * next.abs() {
             return next;
         }
         x = next;
