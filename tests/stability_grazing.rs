@@ -59,7 +59,8 @@ impl Graze {
 
     /// Roundings of `squared`: of some terms, none larger than the larger of u² and edge², by up to ε/2 each.
     fn rounding(&self) -> f64 {
-        4.0 * f64::EPSILON * self.edge().max(self.u).powi(2)
+        let largest = self.edge().max(self.u);
+        4.0 * f64::EPSILON * largest * largest
     }
 }
 

@@ -79,19 +79,17 @@ fn story(u: f64, w: f64, truth: &TrueRay) -> Vec<(EventKind, f64)> {
     let capture = (EventKind::End(Fate::Capture), 1.0);
     let escape = (EventKind::End(Fate::Escape), f64::INFINITY);
     let far = f64::INFINITY;
-    match (truth.delta > 0.0, truth.inside(), w > 0.0) {
-        (true, _, true) => inbound(start, 1.0).chain([capture]).collect(),
-        (true, _, false) => outbound(start, far).chain([escape]).collect(),
-        (false, false, true) => {
-            let back = outbound(1.5, far).chain([escape]);
-            inbound(start, 1.5).chain(back).collect()
-        }
-        (false, false, false) => outbound(start, far).chain([escape]).collect(),
-        (false, true, false) if w < 0.0 => {
-            let back = inbound(1.5, 1.0).chain([capture]);
-            outbound(start, 1.5).chain(back).collect()
-        }
-        (false, true, _) => inbound(start, 1.0).chain([capture]).collect(),
+    let can_turn = truth.delta < 0.0;
+    if can_turn && w > 0.0 && !truth.inside() {
+        let back = outbound(1.5, far).chain([escape]);
+        inbound(start, 1.5).chain(back).collect()
+    } else if can_turn && w < 0.0 && truth.inside() {
+        let back = inbound(1.5, 1.0).chain([capture]);
+        outbound(start, 1.5).chain(back).collect()
+    } else if w > 0.0 || (can_turn && truth.inside()) {
+        inbound(start, 1.0).chain([capture]).collect()
+    } else {
+        outbound(start, far).chain([escape]).collect()
     }
 }
 

@@ -52,7 +52,7 @@ fn views() -> Vec<(DVec3, DVec3)> {
         let k = f64::from(k);
         let radius = [30.0, 7.0, 100.0, 2.0, 1.4, 1000.0][k as usize % 6];
         let position = DVec3::new(0.97 - 0.03 * k, 0.1, 0.2 + 0.03 * k).normalize() * radius;
-        let (sin, cos) = (0.7 * k).sin_cos();
+        let (sin, cos) = libm::sincos(0.7 * k);
         let line = DVec3::new(cos, sin, 0.6 * sin * cos);
         let sees = |t: f64| {
             let scene = scene(position, line * t, 1.0);
@@ -92,7 +92,7 @@ fn curves_that_reach_a_view_are_right_to_a_thousandth_of_a_pixel() {
                 // How far apart both edges are across: the least of eight directions.
                 let mut apart = f64::INFINITY;
                 for i in 0..8 {
-                    let (sin, cos) = (f64::from(i) * core::f64::consts::FRAC_PI_8).sin_cos();
+                    let (sin, cos) = libm::sincos(f64::from(i) * core::f64::consts::FRAC_PI_8);
                     let place = |t: f64| (MIDDLE + cos * t, MIDDLE + sin * t);
                     let span = (-8.0, 8.0);
                     let exact = change(

@@ -77,7 +77,8 @@ impl Natural {
             .iter()
             .rev()
             .fold(0.0, |sum, &digit| sum * 4_294_967_296.0 + f64::from(digit));
-        libm::ldexp(head, 32 * lowest as i32 + exponent)
+        let lowest = i32::try_from(lowest).expect("a number of less than 2³¹ digits");
+        libm::ldexp(head, 32 * lowest + exponent)
     }
 }
 

@@ -169,9 +169,9 @@ pub(crate) fn from_periapsis(e2: f64, u: f64, squared: f64) -> f64 {
 /// from the ends of the range (ln √(u − u1) of the farthest root at u = 0): the error of a panel is below
 /// (0.3)³² of the integrand there, less than 1e-16.
 fn integral(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
+    static RULE: OnceLock<[(f64, f64); 8]> = OnceLock::new();
     let panels = ((to - from).abs() * 4.0).ceil().max(1.0);
     let half = 0.5 * (to - from) / panels;
-    static RULE: OnceLock<[(f64, f64); 8]> = OnceLock::new();
     let rule = RULE.get_or_init(gauss_legendre);
     (0..panels as u32)
         .map(|k| {
