@@ -1,5 +1,8 @@
 //! Frames by each way there is, and what two of them may differ by.
 
+// Each test is a program of its own, and takes what it needs.
+#![allow(dead_code)]
+
 use core::f64::consts::PI;
 
 use darkness::isoradial::{Isoradials, Sight};
@@ -26,6 +29,17 @@ pub(crate) fn by_pixels(scene: &Scene, orbits: &impl Orbits) -> Vec<u8> {
 /// Whether the disk is seen at a point of the picture, given in pixels from its top left corner: by definition. Of
 /// the intervals of the swept angle that the ray spends between the disk's radii one holds a `φ₁ + kπ`.
 pub(crate) fn sees_disk(scene: &Scene, view: &View, column: f64, row: f64) -> bool {
+    sees_disk_by(&Exact, scene, view, column, row)
+}
+
+/// The same by the angles of another method.
+pub(crate) fn sees_disk_by(
+    orbits: &impl Orbits,
+    scene: &Scene,
+    view: &View,
+    column: f64,
+    row: f64,
+) -> bool {
     let ray = view.ray_at(view.x_at(column), view.y_at(row));
     let s = ray.transverse();
     if s == 0.0 {
@@ -33,7 +47,7 @@ pub(crate) fn sees_disk(scene: &Scene, view: &View, column: f64, row: f64) -> bo
     }
     let disk = scene.disk();
     let start = Ray::new(view.u0(), view.dudphi(ray)).unwrap();
-    let events = Exact.follow(start, &[disk.inner, disk.outer]).unwrap();
+    let events = orbits.follow(start, &[disk.inner, disk.outer]).unwrap();
     let first = view.plane_crossing(ray.ta, s);
     let crossings = (0..40).map(|k| first + f64::from(k) * PI);
     crossings.filter(|&angle| angle > 0.0).any(|angle| {
@@ -54,6 +68,41 @@ pub(crate) fn sees_disk(scene: &Scene, view: &View, column: f64, row: f64) -> bo
             Some((EventKind::End(_), _)) => false,
         }
     })
+}
+
+/// What the curves of a scene see at any point of its picture.
+pub(crate) struct SeenByCurves {
+    view: View,
+    curves: Isoradials,
+    tolerance: f64,
+}
+
+impl SeenByCurves {
+    pub(crate) fn new(scene: &Scene, angles: &impl SweptAngles) -> Self {
+        let view = View::new(scene);
+        let sight = Sight::new(scene, &view, scene.tolerance());
+        let curves = Isoradials::new(&sight, angles);
+        Self {
+            view,
+            curves,
+            tolerance: scene.tolerance(),
+        }
+    }
+
+    /// Whether they are as right as frames from curves must be.
+    pub(crate) fn reach(&self) -> bool {
+        self.curves.error().total() <= self.tolerance
+    }
+
+    /// Whether the disk is seen at a point given in pixels from the picture's top left corner.
+    pub(crate) fn see(&self, column: f64, row: f64) -> bool {
+        let ray = self
+            .view
+            .ray_at(self.view.x_at(column), self.view.y_at(row));
+        let s = ray.transverse();
+        let (n, d) = (self.view.n_p().abs() * s, self.view.plane_slope() * ray.ta);
+        s > 0.0 && self.curves.meets(ray.z, s, n, d)
+    }
 }
 
 /// Whether moving the sample of pixel (i, j) by a thousandth of a pixel changes what it sees.
