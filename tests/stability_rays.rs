@@ -327,7 +327,7 @@ fn tangential_rays_leave_their_turning_point_behind() {
         assert!(known.truth.delta < 0.0);
         // What integration promises: angles below 10 radians, beside what rounding u does to them; they go as the
         // logarithm of the distance from the photon sphere, and where they are small as √(2d/|ü|), d the way in u.
-        if known.angles.iter().all(|&(angle, _)| angle < 10.0) {
+        if known.angles.iter().all(|&angle| angle < 10.0) {
             let rounding = 64.0 * f64::EPSILON / (1.5 * u - 1.0).abs();
             for w in [0.0, -0.0, 1e-308, -1e-308] {
                 known.ray = Ray::new(u, w).unwrap();
