@@ -12,12 +12,38 @@ pub const WHITE: u8 = 255;
 
 /// The frame's pixels, row by row from the top, on all threads of the current rayon pool.
 ///
+/// # Errors
+/// [`RenderError::Memory`]
+pub fn render(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> {
+    let mut pixels = blank(view)?;
+    render_into(view, curves, &mut pixels, view.width() as usize)?;
+    Ok(pixels)
+}
+
+/// The frame, drawn into a caller's buffer: row j begins at `j stride`, whatever lies between the rows' ends is left
+/// as it is. Nothing is allocated.
+///
 /// Tiles whose rays all meet the same are filled at once; the others are split, down to single pixels along the
 /// disk's edges.
 ///
 /// # Errors
-/// [`RenderError::Memory`]
-pub fn render(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> {
+/// [`RenderError::Buffer`] for a stride or a buffer that the frame does not fit.
+pub fn render_into(
+    view: &View,
+    curves: &Isoradials,
+    pixels: &mut [u8],
+    stride: usize,
+) -> Result<(), RenderError> {
+    let (width, height) = (view.width() as usize, view.height() as usize);
+    let needed = stride.saturating_mul(height - 1).saturating_add(width);
+    if stride < width || pixels.len() < needed {
+        return Err(RenderError::Buffer {
+            width,
+            height,
+            stride,
+            bytes: pixels.len(),
+        });
+    }
     let sample = Sample::new(view, curves);
     let filler = Filler {
         view,
@@ -25,18 +51,18 @@ pub fn render(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> 
         reach: 0.0,
         pixel: |column: usize, row: usize| sample.at(column, row),
     };
-    let width = view.width() as usize;
-    let mut pixels = blank(view)?;
-    pixels
-        .par_chunks_mut(width * TILE)
+    pixels[..needed]
+        .par_chunks_mut(stride * TILE)
         .enumerate()
         .for_each(|(index, pixels)| {
-            let height = pixels.len() / width;
+            let first = index * TILE;
+            let height = TILE.min(height - first);
             let mut band = Band {
                 pixels,
-                stride: width,
-                first: index * TILE,
+                stride,
+                first,
             };
+            band.blacken(height, width);
             for left in (0..width).step_by(TILE) {
                 let tile = Tile {
                     left,
@@ -47,7 +73,7 @@ pub fn render(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> 
                 filler.fill(&mut band, tile, None);
             }
         });
-    Ok(pixels)
+    Ok(())
 }
 
 /// The same pixels, each asked by itself.

@@ -24,6 +24,20 @@ pub enum RenderError {
         /// What they take.
         bytes: usize,
     },
+    /// The frame does not fit the buffer it is to be drawn into.
+    #[error(
+        "a picture of {width} × {height} pixels, its rows {stride} bytes apart, does not fit a buffer of {bytes} bytes"
+    )]
+    Buffer {
+        /// Pixels in a row.
+        width: usize,
+        /// Rows.
+        height: usize,
+        /// From one row to the next.
+        stride: usize,
+        /// What there is.
+        bytes: usize,
+    },
     /// A ray could not be followed.
     #[error(transparent)]
     Orbit(#[from] OrbitError),

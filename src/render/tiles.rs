@@ -17,7 +17,7 @@ pub(super) const TILE: usize = 64;
 const SMALLEST: usize = 4;
 
 /// A tile is cut into rows where what is not linear of its edges is below this, in pixels.
-const STRAIGHT: f64 = 0.3;
+const STRAIGHT: f64 = 1.2;
 
 /// A band of a frame's rows.
 pub(super) struct Band<'a> {
@@ -122,6 +122,7 @@ impl<P: Fn(usize, usize) -> u8> Filler<'_, P> {
         for j in 0..tile.height {
             let dy = j as f64 + 0.5 - half_height;
             let cuts = |line: &Line| Cut::new(line, dy, half_width, half_height, self.reach);
+            let y = band.first + tile.top + j;
             let row = band.row(tile.top + j, tile.left, tile.width);
             let mut possible: [(usize, usize); 12] = [(0, 0); 12];
             for (possible, band) in possible.iter_mut().zip(open.bands()) {
@@ -138,7 +139,6 @@ impl<P: Fn(usize, usize) -> u8> Filler<'_, P> {
                 }
                 *possible = perhaps;
             }
-            let y = band.first + tile.top + j;
             for &(from, to) in &possible[..open.bands().len()] {
                 for i in from..to {
                     if row[i] != WHITE {
@@ -164,6 +164,17 @@ impl<P: Fn(usize, usize) -> u8> Filler<'_, P> {
 impl Band<'_> {
     fn row(&mut self, row: usize, left: usize, width: usize) -> &mut [u8] {
         &mut self.pixels[row * self.stride + left..][..width]
+    }
+
+    /// Makes the first `height` rows black.
+    pub(super) fn blacken(&mut self, height: usize, width: usize) {
+        if self.stride == width {
+            self.pixels.fill(0);
+        } else {
+            for row in 0..height {
+                self.row(row, 0, width).fill(0);
+            }
+        }
     }
 
     fn whiten(&mut self, tile: Tile) {
