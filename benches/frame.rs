@@ -5,11 +5,11 @@
 
 mod interleaved;
 
-use darkness::isoradial::Isoradials;
+use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::Ray;
 use darkness::orbit::exact::Exact;
 use darkness::orbit::integrate::{FixedStep, Scheme};
-use darkness::render::mask::{WHITE, render, render_every_pixel, sight};
+use darkness::render::mask::{WHITE, render, render_every_pixel};
 use darkness::render::{RenderError, pixelwise};
 use darkness::scene::{Scene, View, builtins};
 use darkness::table::{Spec, generate};
@@ -57,11 +57,12 @@ fn main() {
             };
             let view = View::new(&scene);
             let pixels = view.width() as usize * view.height() as usize;
-            let curves = Isoradials::new(&sight(&scene, &view), &lookup);
+            let sight = Sight::new(&scene, &view, scene.tolerance());
+            let curves = Isoradials::new(&sight, &lookup);
             println!(
                 "{}: {} orders, {} bytes of curves, wrong pixels of RK4: {}, of the tiles: {}",
                 builtin.name(),
-                curves.orders(),
+                curves.orders().len(),
                 curves.bytes(),
                 drawn(render_every_pixel(&view, &curves))
                     .iter()
@@ -87,10 +88,7 @@ fn main() {
                     Contender {
                         name: "curves and frame",
                         run: Box::new(|| {
-                            white(&drawn(render(
-                                &view,
-                                &Isoradials::new(&sight(&scene, &view), &lookup),
-                            )))
+                            white(&drawn(render(&view, &Isoradials::new(&sight, &lookup))))
                         }),
                     },
                     Contender {
@@ -103,9 +101,7 @@ fn main() {
                     },
                     Contender {
                         name: "the curves alone",
-                        run: Box::new(|| {
-                            Isoradials::new(&sight(&scene, &view), &lookup).orders() as f64
-                        }),
+                        run: Box::new(|| Isoradials::new(&sight, &lookup).nodes() as f64),
                     },
                     Contender {
                         name: "filling the same bytes",

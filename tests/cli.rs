@@ -83,26 +83,107 @@ fn with_draft() -> TempDir {
 fn render_works_at_once_in_an_empty_folder_and_leaves_nothing_else() {
     let folder = tempdir().unwrap();
     let here = folder.path();
-    let (stdout, stderr) = done(darkness(here, &["render", "--size", SMALL]));
+    let (stdout, stderr) = done(darkness(here, &["render"]));
     assert!(stdout.is_empty());
     for words in [
         "tables/standard.table is not there yet",
-        "classic.png: 96 × 54, table standard (error ",
+        "classic.png: 1920 × 1080, table standard (error ",
     ] {
         assert!(stderr.contains(words), "{stderr}");
     }
     assert_eq!(listing(here), ["classic.png", "tables"]);
     assert_eq!(listing(&here.join("tables")), ["standard.table"]);
     let picture = image::open(here.join("classic.png")).unwrap().into_luma8();
-    assert_eq!(picture.dimensions(), (96, 54));
+    assert_eq!(picture.dimensions(), (1920, 1080));
     let white = picture.pixels().filter(|pixel| pixel.0 == [255]).count();
-    assert!((500..4000).contains(&white), "{white} white pixels");
+    assert!(
+        (200_000..1_600_000).contains(&white),
+        "{white} white pixels"
+    );
 
     // The second time the table is there, and -q says nothing.
     let before = fs::read(here.join("classic.png")).unwrap();
-    let (_, stderr) = done(darkness(here, &["render", "--size", SMALL, "-q"]));
+    let (_, stderr) = done(darkness(here, &["render", "-q"]));
     assert_eq!(stderr, "");
     assert_eq!(fs::read(here.join("classic.png")).unwrap(), before);
+}
+
+/// The table follows from the picture: the draft one for a small picture, none for one that even the fine table is
+/// too coarse for; `--explain` tells which and why, and draws nothing.
+#[test]
+fn a_picture_takes_the_smallest_table_that_is_good_enough() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    for (tolerance, name) in [("0.001", "draft"), ("1e-5", "standard"), ("1e-8", "fine")] {
+        let size = ["--size", SMALL, "--tolerance", tolerance];
+        let (_, stderr) = done(darkness(here, &[&["render"][..], &size].concat()));
+        let words = [
+            format!("tables/{name}.table is not there yet"),
+            format!("96 × 54, table {name} (error "),
+        ];
+        for words in words {
+            assert!(stderr.contains(&words), "{stderr}");
+        }
+        let explain = [&["render", "--explain"][..], &size].concat();
+        let explained = printed(darkness(here, &explain));
+        for words in [
+            "96 × 54, edges to be right to ",
+            &format!("{name} (tables/{name}.table), error "),
+            "orders      0: ",
+            "and up are left out",
+            "edge error  ",
+        ] {
+            assert!(explained.contains(words), "no {words} in:\n{explained}");
+        }
+    }
+    let finest = ["render", "--size", SMALL, "--tolerance", "1e-10"];
+    let (_, stderr) = done(darkness(here, &finest));
+    assert!(stderr.contains("exact curves"), "{stderr}");
+    fs::remove_file(here.join("classic.png")).unwrap();
+    done(darkness(here, &[&finest[..], &["--explain"]].concat()));
+    assert_eq!(listing(here), ["tables"]);
+    assert_eq!(
+        listing(&here.join("tables")),
+        ["draft.table", "fine.table", "standard.table"]
+    );
+
+    // A table that somebody names is taken all the same, and what comes of it is said.
+    let coarse = ["--table", "tables/draft.table", "--tolerance", "1e-6"];
+    let (_, stderr) = done(darkness(
+        here,
+        &[&["render", "--size", SMALL][..], &coarse].concat(),
+    ));
+    assert!(
+        stderr.contains("the standard table is good enough"),
+        "{stderr}"
+    );
+}
+
+#[test]
+fn tolerances_that_make_no_sense_are_misuse() {
+    let folder = tempdir().unwrap();
+    for (args, words) in [
+        (&["--tolerance", "0"][..], "image.tolerance = 0.0"),
+        (&["--tolerance", "-1"], "image.tolerance = -1.0"),
+        (&["--tolerance", "nan"], "image.tolerance = NaN"),
+        (&["--tolerance", "2"], "at most 1 pixel"),
+        (
+            &["--tolerance", "0.1", "--method", "exact"],
+            "--tolerance is about isoradial curves",
+        ),
+        (
+            &["--explain", "--method", "integrate"],
+            "--explain is about isoradial curves",
+        ),
+        (&["--explain", "-o", "x.png"], "--explain"),
+    ] {
+        refused(
+            darkness(folder.path(), &[&["render"], args].concat()),
+            2,
+            &[words],
+        );
+    }
+    assert!(listing(folder.path()).is_empty());
 }
 
 #[test]
@@ -286,7 +367,8 @@ fn only_the_default_table_is_made_unasked() {
     for (variable, flag, words) in [
         ("other.table", &["--table", "d.table"][..], "table draft"),
         ("d.table", &[], "table draft"),
-        ("", &[], "table standard"),
+        // A small picture needs the draft table, one with edges ten times as right the standard one.
+        ("", &["--tolerance", "0.0001"], "table standard"),
     ] {
         let mut command = darkness(here, &render);
         command.env("DARKNESS_TABLE", variable).args(flag);
@@ -305,7 +387,7 @@ fn a_table_that_cannot_be_kept_is_used_all_the_same() {
     command.arg(&picture);
     let (_, stderr) = done(command);
     assert!(
-        stderr.starts_with("darkness: tables/standard.table: the table cannot be kept"),
+        stderr.starts_with("darkness: tables/draft.table: the table cannot be kept"),
         "{stderr}"
     );
     assert!(picture.exists());

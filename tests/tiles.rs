@@ -4,15 +4,16 @@
 #[path = "common/tables.rs"]
 mod tables;
 
-use darkness::isoradial::Isoradials;
-use darkness::render::mask::{render, render_every_pixel, sight};
+use darkness::isoradial::{Isoradials, Sight};
+use darkness::render::mask::{render, render_every_pixel};
 use darkness::scene::{Scene, View, builtins};
 use proptest::prelude::*;
 use tables::table;
 
 fn frames(scene: &Scene) -> (Vec<u8>, Vec<u8>) {
     let view = View::new(scene);
-    let curves = Isoradials::new(&sight(scene, &view), &table("standard").lookup());
+    let sight = Sight::new(scene, &view, scene.tolerance());
+    let curves = Isoradials::new(&sight, &table("standard").lookup());
     (
         render(&view, &curves).unwrap(),
         render_every_pixel(&view, &curves).unwrap(),

@@ -12,14 +12,15 @@ use super::progress::{Report, warn};
 use crate::orbit::integrate::Adaptive;
 use crate::table::{self, Lookup, Memory, Metadata, Spec, Table, TableError};
 
-/// The table that is made where it is missing.
+/// The table that is good for rays of all kinds.
 pub(super) const DEFAULT_TABLE: &str = "standard";
 
 /// Names the table where `--table` does not.
 const TABLE_VARIABLE: &str = "DARKNESS_TABLE";
 
 const TABLE_HELP: &str = "The table to read with --method table [env: DARKNESS_TABLE] \
-    [default: tables/standard.table, made where it is missing]";
+    [default: tables/standard.table; a picture that needs less or more takes tables/draft.table or tables/fine.table; \
+    made where it is missing]";
 
 /// What [`Adaptive`] can be asked for: above, it takes the upper bound; at the lower one steps are long since as
 /// short as helps.
@@ -61,14 +62,16 @@ fn tolerance(text: &str) -> Result<f64, String> {
 pub(super) enum Checked {
     /// Ready.
     Ready(Method),
-    /// The default table is yet to be made.
-    TableMissing(PathBuf),
+    /// The table of that name is yet to be made.
+    TableMissing { name: &'static str, path: PathBuf },
 }
 
 /// A method, ready to follow rays.
 #[derive(Debug)]
 pub(super) enum Method {
     Table(AnyTable),
+    /// In place of a table, where no table is good enough.
+    NoTable,
     Exact,
     Integrate(Adaptive),
 }
@@ -89,7 +92,15 @@ impl AnyTable {
         }
     }
 
-    fn metadata(&self) -> &Metadata {
+    /// How many bytes the table has.
+    pub(super) fn bytes(&self) -> usize {
+        match self {
+            Self::Mapped(table) => table.bytes().len(),
+            Self::Made(table) => table.bytes().len(),
+        }
+    }
+
+    pub(super) fn metadata(&self) -> &Metadata {
         match self {
             Self::Mapped(table) => table.metadata(),
             Self::Made(table) => table.metadata(),
@@ -98,12 +109,13 @@ impl AnyTable {
 }
 
 impl MethodArgs {
-    /// Checks the options, and the table's file to its last byte.
+    /// Checks the options, and the table's file to its last byte. Where nobody names a table, the one called `needed`
+    /// is taken, which is none where no table is good enough.
     ///
     /// # Errors
     /// A misuse, or a table that cannot be read. A damaged table is never replaced unasked, nor is one made where the
     /// user names a file: only the default one is.
-    pub(super) fn check(&self) -> anyhow::Result<Checked> {
+    pub(super) fn check(&self, needed: Option<&'static str>) -> anyhow::Result<Checked> {
         if self.integrate_tolerance.is_some() && self.method != MethodName::Integrate {
             return Err(Misuse::ToleranceUnused.into());
         }
@@ -114,48 +126,47 @@ impl MethodArgs {
                     .map_or_else(Adaptive::default, Adaptive::new),
             ),
             MethodName::Table => {
-                let place = self.place();
-                match table::open(&place.path) {
-                    Ok(table) => Method::Table(AnyTable::Mapped(table)),
-                    Err(TableError::Missing { path }) if place.origin == Origin::Default => {
-                        return Ok(Checked::TableMissing(path));
+                let Some(place) = self.place(needed) else {
+                    return Ok(Checked::Ready(Method::NoTable));
+                };
+                match (table::open(&place.path), needed) {
+                    (Ok(table), _) => Method::Table(AnyTable::Mapped(table)),
+                    (Err(TableError::Missing { path }), Some(name))
+                        if place.origin == Origin::Default =>
+                    {
+                        return Ok(Checked::TableMissing { name, path });
                     }
-                    Err(error) if place.origin == Origin::Variable => {
+                    (Err(error), _) if place.origin == Origin::Variable => {
                         anyhow::bail!(
                             "{error} (the environment's {TABLE_VARIABLE} names this file)"
                         )
                     }
-                    Err(error) => return Err(error.into()),
+                    (Err(error), _) => return Err(error.into()),
                 }
             }
         };
         Ok(Checked::Ready(method))
     }
 
+    /// Whether rays are read from a table, or from curves drawn with one.
+    pub(super) fn is_table(&self) -> bool {
+        self.method == MethodName::Table
+    }
+
     /// The table's file, where the method reads one.
-    pub(super) fn table_path(&self) -> Option<PathBuf> {
-        (self.method == MethodName::Table).then(|| self.place().path)
+    pub(super) fn table_path(&self, needed: Option<&'static str>) -> Option<PathBuf> {
+        let place = self.is_table().then(|| self.place(needed))?;
+        place.map(|place| place.path)
     }
 
     /// Flag, environment, default. An empty variable counts as none, as everywhere.
-    fn place(&self) -> Place {
+    fn place(&self, needed: Option<&str>) -> Option<Place> {
         let variable = || std::env::var_os(TABLE_VARIABLE).filter(|name| !name.is_empty());
-        if let Some(path) = &self.table {
-            Place {
-                path: path.clone(),
-                origin: Origin::Flag,
-            }
-        } else if let Some(path) = variable() {
-            Place {
-                path: path.into(),
-                origin: Origin::Variable,
-            }
-        } else {
-            Place {
-                path: table::default_path(DEFAULT_TABLE),
-                origin: Origin::Default,
-            }
-        }
+        let flag = self.table.clone().map(|path| (path, Origin::Flag));
+        let named = flag.or_else(|| variable().map(|path| (path.into(), Origin::Variable)));
+        let default = || needed.map(|name| (table::default_path(name), Origin::Default));
+        let (path, origin) = named.or_else(default)?;
+        Some(Place { path, origin })
     }
 }
 
@@ -178,15 +189,15 @@ impl Checked {
     /// # Errors
     /// A table that cannot be made.
     pub(super) fn ready(self, report: Report) -> anyhow::Result<Method> {
-        let path = match self {
+        let (name, path) = match self {
             Self::Ready(method) => return Ok(method),
-            Self::TableMissing(path) => path,
+            Self::TableMissing { name, path } => (name, path),
         };
         report.note(format_args!(
             "{} is not there yet: making it, this once",
             path.display()
         ));
-        let table = make(&spec(DEFAULT_TABLE)?, report)?;
+        let table = make(&spec(name)?, report)?;
         if let Err(error) = table::save(&table, &path) {
             let reason = match error {
                 TableError::Unwritable { source, .. } => source.to_string(),
@@ -209,6 +220,7 @@ impl fmt::Display for Method {
                 let error = metadata.measured_error;
                 write!(f, "table {} (error {error:.1e})", metadata.spec.name)
             }
+            Self::NoTable => write!(f, "exact curves"),
             Self::Exact => write!(f, "exact"),
             Self::Integrate(method) => write!(f, "integrate (tolerance {:e})", method.tolerance),
         }

@@ -5,6 +5,7 @@
 //! quietly.
 
 mod chart;
+mod explain;
 mod method;
 mod picture;
 mod progress;
@@ -84,6 +85,10 @@ enum Misuse {
         height: u32,
         source: crate::scene::SceneError,
     },
+    #[error("{0}")]
+    Tolerance(#[source] crate::scene::SceneError),
+    #[error("--{flag} is about isoradial curves, which only --method table draws")]
+    CurvesUnused { flag: &'static str },
     #[error("--integrate-tolerance says how well rays are integrated: it needs --method integrate")]
     ToleranceUnused,
     #[error(

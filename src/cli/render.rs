@@ -5,17 +5,23 @@ use std::time::Instant;
 
 use clap::Args;
 
+use super::explain::explain;
 use super::method::{Method, MethodArgs};
 use super::picture::Destination;
 use super::progress::{Report, duration};
 use super::{Misuse, Threads, start_threads};
-use crate::isoradial::Isoradials;
+use crate::isoradial::{EdgeError, Isoradials};
 use crate::orbit::Orbits;
 use crate::orbit::exact::Exact;
+use crate::orbit::path::SweptAngles;
+use crate::render::needs::Needs;
 use crate::render::{RenderError, mask, pixelwise};
 use crate::scene::{DEFAULT_SCENE, Scene, View};
 
 /// Render a scene as a PNG picture
+///
+/// The table, the orders of the image and the nodes of their curves are the fewest with which every edge is right to
+/// the scene's tolerance; --explain tells which they are.
 #[derive(Debug, Args)]
 pub(super) struct RenderArgs {
     /// A scene's TOML file, or the name of a built-in scene (`darkness scene` lists them)
@@ -28,6 +34,12 @@ pub(super) struct RenderArgs {
     /// The picture's size in pixels, such as 1920x1080, in place of the scene's
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<(u32, u32)>,
+    /// What an edge may be off by, in pixels, above 0 and at most 1, in place of the scene's
+    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true)]
+    tolerance: Option<f64>,
+    /// Tell what the picture needs and what it does not, and draw nothing
+    #[arg(long, conflicts_with = "output")]
+    explain: bool,
     #[command(flatten)]
     method: MethodArgs,
     #[command(flatten)]
@@ -42,26 +54,26 @@ fn size(text: &str) -> Result<(u32, u32), String> {
 
 /// Runs the verb.
 pub(super) fn run(args: &RenderArgs, report: Report) -> anyhow::Result<()> {
-    let mut scene = Scene::load(&args.scene)?;
-    if let Some((width, height)) = args.size {
-        scene = scene
-            .with_size(width, height)
-            .map_err(|source| Misuse::Size {
-                width,
-                height,
-                source,
-            })?;
+    let scene = scene(args)?;
+    let destination = (!args.explain)
+        .then(|| Destination::new(args.output.as_deref(), &args.scene))
+        .transpose()?;
+    let view = View::new(&scene);
+    let needs = Needs::new(&scene, &view);
+    let needed = needs.table().map(|candidate| candidate.name);
+    let table = args.method.table_path(needed);
+    if let (Some(destination), Some(table)) = (&destination, &table) {
+        destination.spares(table)?;
     }
-    let destination = Destination::new(args.output.as_deref(), &args.scene)?;
-    if let Some(table) = args.method.table_path() {
-        destination.spares(&table)?;
-    }
-    let method = args.method.check()?;
+    let method = args.method.check(needed)?;
     start_threads(args.threads.threads)?;
 
     let method = method.ready(report)?;
+    let Some(destination) = destination else {
+        return explain(&scene, &needs, &method, table.as_deref());
+    };
     let start = Instant::now();
-    let pixels = draw(&scene, &method, report)?;
+    let pixels = draw(&scene, &view, &needs, &method, report)?;
     let time = duration(start.elapsed());
     let size = scene.image();
     destination.write_png(&pixels, size)?;
@@ -72,26 +84,82 @@ pub(super) fn run(args: &RenderArgs, report: Report) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The scene's pixels: from isoradial curves with a table, else ray by ray.
-fn draw(scene: &Scene, method: &Method, report: Report) -> Result<Vec<u8>, RenderError> {
-    let view = View::new(scene);
-    match method {
-        Method::Table(table) => {
-            let lookup = table.lookup();
-            let sight = mask::sight(scene, &view);
-            let curves = Isoradials::new(&sight, &lookup);
-            if curves.error() <= sight.tolerance {
-                return mask::render(&view, &curves);
-            }
-            report.note(format_args!(
-                "the isoradial curves of this view are only right to {:.1e} pixels, so every pixel's ray is looked up by itself, which takes a hundred times as long",
-                curves.error()
-            ));
-            ray_by_ray(scene, &view, &lookup, report)
+/// The scene asked for, with what the options change of it.
+fn scene(args: &RenderArgs) -> anyhow::Result<Scene> {
+    for (given, flag) in [
+        (args.tolerance.is_some(), "tolerance"),
+        (args.explain, "explain"),
+    ] {
+        if given && !args.method.is_table() {
+            return Err(Misuse::CurvesUnused { flag }.into());
         }
-        Method::Exact => ray_by_ray(scene, &view, &Exact, report),
-        Method::Integrate(adaptive) => ray_by_ray(scene, &view, adaptive, report),
     }
+    let mut scene = Scene::load(&args.scene)?;
+    if let Some((width, height)) = args.size {
+        scene = scene
+            .with_size(width, height)
+            .map_err(|source| Misuse::Size {
+                width,
+                height,
+                source,
+            })?;
+    }
+    if let Some(pixels) = args.tolerance {
+        scene = scene.with_tolerance(pixels).map_err(Misuse::Tolerance)?;
+    }
+    Ok(scene)
+}
+
+/// The scene's pixels: from isoradial curves with a table, else ray by ray.
+fn draw(
+    scene: &Scene,
+    view: &View,
+    needs: &Needs,
+    method: &Method,
+    report: Report,
+) -> Result<Vec<u8>, RenderError> {
+    match method {
+        Method::Table(table) => by_curves(scene, view, needs, &table.lookup(), report),
+        Method::NoTable => by_curves(scene, view, needs, &Exact, report),
+        Method::Exact => ray_by_ray(scene, view, &Exact, report),
+        Method::Integrate(adaptive) => ray_by_ray(scene, view, adaptive, report),
+    }
+}
+
+fn by_curves(
+    scene: &Scene,
+    view: &View,
+    needs: &Needs,
+    angles: &impl SweptAngles,
+    report: Report,
+) -> Result<Vec<u8>, RenderError> {
+    let curves = Isoradials::new(&needs.sight, angles);
+    let (error, allowed) = (curves.error(), scene.tolerance());
+    if is_unresolved(error, allowed) {
+        report.note(format_args!(
+            "the isoradial curves of this view are only right to {:.1e} pixels, so every pixel's ray is followed by itself, which takes a hundred times as long",
+            error.total()
+        ));
+        return ray_by_ray(scene, view, angles, report);
+    }
+    if error.total() > allowed {
+        report.note(format_args!(
+            "an edge of this picture may be off by {:.1e} pixels, more than the {allowed:?} asked for: {}",
+            error.total(),
+            if error.angles > error.rounding {
+                needs.advice()
+            } else {
+                "double precision cannot do better".into()
+            }
+        ));
+    }
+    mask::render(view, &curves)
+}
+
+/// Whether the curves fall short of what their angles and the arithmetic allow: where a disk of any width and a lens
+/// of any length bend them more than any number of nodes follows.
+fn is_unresolved(error: EdgeError, allowed: f64) -> bool {
+    error.interpolation > allowed && error.interpolation > 4.0 * (error.angles + error.rounding)
 }
 
 fn ray_by_ray(

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::method::{Method, MethodArgs};
+use super::method::{DEFAULT_TABLE, Method, MethodArgs};
 use super::progress::Report;
 use super::rays_csv::Rays;
 use super::{Misuse, StdoutError, start_threads};
@@ -58,7 +58,7 @@ const BUFFER: usize = 1 << 16;
 
 /// Runs the verb.
 pub(super) fn run(args: &TraceArgs, report: Report) -> anyhow::Result<()> {
-    let method = args.method.check()?;
+    let method = args.method.check(Some(DEFAULT_TABLE))?;
     let (input, name) = open(args.input.as_deref())?;
     let mut rays = Rays::new(input, name)?;
     start_threads(None)?;
@@ -67,7 +67,7 @@ pub(super) fn run(args: &TraceArgs, report: Report) -> anyhow::Result<()> {
     let mut out = BufWriter::with_capacity(BUFFER, io::stdout().lock());
     let traced = match &method {
         Method::Table(table) => trace(&table.lookup(), &mut rays, &args.radii, &mut out),
-        Method::Exact => trace(&Exact, &mut rays, &args.radii, &mut out),
+        Method::Exact | Method::NoTable => trace(&Exact, &mut rays, &args.radii, &mut out),
         Method::Integrate(adaptive) => trace(adaptive, &mut rays, &args.radii, &mut out),
     };
     // What comes before a refused row is right, and stays.

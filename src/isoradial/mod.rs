@@ -19,133 +19,148 @@
 //! its own: its axis is `x = N/(N + D)` while D ≥ 0 and `x = |D|/(N + |D|)` beyond π/2, one division and no
 //! trigonometry, analytic in φ within the piece. In the first piece h has a pole at φ = 0; there `x h` is kept.
 
+//! Only the part of each quarter turn that the picture shows is drawn: between the least and the greatest x of its
+//! rays.
+//!
+//! # How many orders, how many nodes
+//! Both follow from the picture and from one number, [`Sight::tolerance`] T, in pixels.
+//!
+//! * *Orders.* To leave out an order that is nowhere thicker than T moves no edge by more than T: its two edges are
+//!   that close to each other. Order k + 1 is in the end e^−π times as thick as order k (Ohanian 1987, *Am. J. Phys.*
+//!   55, 428), so that the first order thinner than T is the last one looked at.
+//! * *Nodes.* They are doubled until the curve between them is right to T/2. The other half of T is for the angles: an
+//!   error δφ of the method's angles moves an edge by `|∂ψ/∂φ| δφ`, see [`sensitivity`], and a table is good enough
+//!   where that is no more than T/2.
+//!
+//! [`Isoradials::error`] tells what has come of it, each part for itself.
+
 mod nodes;
+mod piece;
 mod range;
+mod sight;
 mod solve;
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use crate::orbit::invariants::{critical_slope, three_u_minus_two};
 use crate::orbit::path::SweptAngles;
-use crate::table::spline::{Scale, Stencil, value};
 use nodes::Nodes;
+use piece::{Piece, thickness};
 pub use range::{Bundle, Verdict};
+pub use sight::Sight;
 use solve::Target;
 
-/// What the curves are drawn for: one camera radius, one disk, one size of pixel.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sight {
-    /// The camera's inverse radius.
-    pub u0: f64,
-    /// `u0 √(1 − u0)`: du/dφ over κ.
-    pub slope_scale: f64,
-    /// Inverse radius of the disk's inner edge.
-    pub u_inner: f64,
-    /// Inverse radius of the disk's outer edge.
-    pub u_outer: f64,
-    /// The smallest angle between the rays of neighbouring pixels, in radians.
-    pub pixel_angle: f64,
-    /// What an edge may be off by, in pixels.
-    pub tolerance: f64,
+/// The images' orders beyond this one are e^{−12π} as thick as the first: below the rounding of the ray itself.
+const MOST_ORDERS: u32 = 12;
+
+/// One of the disk's edges.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Edge {
+    /// The inner one.
+    Inner,
+    /// The outer one.
+    Outer,
 }
 
-impl Sight {
-    /// κ of the critical ray: towards the hole from outside the photon sphere, away from it from inside.
-    pub fn critical(&self) -> f64 {
-        let size = critical_slope(self.u0) / self.slope_scale;
-        if three_u_minus_two(self.u0) < 0.0 {
-            size
-        } else {
-            -size
+/// What an edge may be off by, in pixels: its parts.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct EdgeError {
+    /// Between the curves' nodes.
+    pub interpolation: f64,
+    /// From the error of the angles that the curves were drawn from.
+    pub angles: f64,
+    /// From rounding.
+    pub rounding: f64,
+}
+
+impl EdgeError {
+    /// All of it.
+    pub fn total(&self) -> f64 {
+        self.interpolation + self.angles + self.rounding
+    }
+
+    fn max(self, other: Self) -> Self {
+        Self {
+            interpolation: self.interpolation.max(other.interpolation),
+            angles: self.angles.max(other.angles),
+            rounding: self.rounding.max(other.rounding),
         }
     }
 }
 
-/// Thinner orders than this, in pixels, are left out.
-const THINNEST: f64 = 1e-3;
-
-/// The images' orders beyond this one are e^{−12π} as thick as the first: below the rounding of the ray itself.
-const MOST_ORDERS: usize = 12;
-
-/// The curves of both edges of the disk for every order that can be seen.
+/// The curves of both edges of the disk for every order that the picture shows.
 #[derive(Debug, Clone)]
 pub struct Isoradials {
     critical: f64,
     orders: Vec<Order>,
-    error: f64,
+    left_out: Option<Thinness>,
+    error: EdgeError,
 }
 
-/// The image of one order: two quarter turns.
+/// The image of one order: two quarter turns, each where the picture shows it.
 #[derive(Debug, Clone)]
-struct Order {
-    pieces: [Piece; 2],
-    /// The greatest thickness, in pixels.
+pub struct Order {
+    number: u32,
     thickness: f64,
+    pieces: [Option<Piece>; 2],
 }
 
-/// A quarter turn of both curves.
-#[derive(Debug, Clone)]
-struct Piece {
-    axis: Scale,
-    inner: Vec<f64>,
-    outer: Vec<f64>,
-    /// No ray of this piece meets the disk with `h` below this
-    lowest: f64,
-    /// or above this.
-    highest: f64,
+/// The first order that was left out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Thinness {
+    /// Its number.
+    pub order: u32,
+    /// Its greatest thickness, in pixels.
+    pub thickness: f64,
+}
+
+impl Order {
+    /// Its number: 0 is the direct image, 1 the first ring.
+    pub fn number(&self) -> u32 {
+        self.number
+    }
+
+    /// Its greatest thickness, in pixels; of rays that the picture does not show, in the size of its pixels there.
+    pub fn thickness(&self) -> f64 {
+        self.thickness
+    }
+
+    /// How many nodes its curves have.
+    pub fn nodes(&self) -> usize {
+        self.pieces.iter().flatten().map(Piece::nodes).sum()
+    }
 }
 
 impl Isoradials {
-    /// The curves of `sight`, from a method's swept angles.
-    ///
-    /// Orders are added while the last one is thicker than a thousandth of a pixel; the curves' nodes are doubled,
-    /// piece by piece, until they are right to a tenth of the tolerance in the middle of every cell, or as right as
-    /// the angles are. [`Self::error`] tells what was reached.
+    /// The curves of `sight`, from a method's swept angles: as many orders and nodes as the [module's page](self)
+    /// derives.
     pub fn new(sight: &Sight, angles: &impl SweptAngles) -> Self {
         let mut curves = Self {
             critical: sight.critical(),
             orders: Vec::new(),
-            error: 0.0,
+            left_out: None,
+            error: EdgeError::default(),
         };
-        for k in 0..MOST_ORDERS {
-            let (order, error) = curves.order(k, sight, angles);
-            if k > 0 && order.thickness < THINNEST {
+        for number in 0..MOST_ORDERS {
+            let drawn = Drawn::new(sight, number, 0.5 * sight.tolerance, angles);
+            let thickness = drawn.thickness(sight);
+            if number > 0 && thickness < sight.tolerance {
+                curves.left_out = Some(Thinness {
+                    order: number,
+                    thickness,
+                });
                 break;
             }
-            curves.error = curves.error.max(error);
-            curves.orders.push(order);
+            curves.error = curves.error.max(drawn.error(sight, angles.error()));
+            let pieces = drawn.pieces(sight);
+            if pieces.iter().any(Option::is_some) {
+                curves.orders.push(Order {
+                    number,
+                    thickness,
+                    pieces,
+                });
+            }
         }
         curves
-    }
-
-    fn order(&self, k: usize, sight: &Sight, angles: &impl SweptAngles) -> (Order, f64) {
-        let mut thickness: f64 = 0.0;
-        let mut error: f64 = 0.0;
-        let pieces = [0, 1].map(|quarter| {
-            let at = Quarter {
-                start: k as f64 * PI + f64::from(quarter) * FRAC_PI_2,
-                pole: k == 0 && quarter == 0,
-            };
-            let draw = |u_disk: f64| {
-                let target = Target {
-                    u0: sight.u0,
-                    slope_scale: sight.slope_scale,
-                    critical: self.critical,
-                    u_disk,
-                };
-                Nodes::draw(&target, at, sight, angles)
-            };
-            let (inner, outer) = (draw(sight.u_inner), draw(sight.u_outer));
-            let count = inner.values.len().max(outer.values.len());
-            let (inner, outer) = (inner.with_count(count), outer.with_count(count));
-            error = error.max(inner.error).max(outer.error);
-            let kappas = |nodes: &Nodes| (0..count).map(|i| nodes.kappa(i)).collect::<Vec<f64>>();
-            for (high, low) in kappas(&inner).into_iter().zip(kappas(&outer)) {
-                thickness = thickness.max(between(low, high) / sight.pixel_angle);
-            }
-            Piece::new(&inner, &outer, self.critical)
-        });
-        (Order { pieces, thickness }, error)
     }
 
     /// κ of the critical ray.
@@ -153,131 +168,187 @@ impl Isoradials {
         self.critical
     }
 
-    /// How many orders are kept: 0 (direct) to this less one.
-    pub fn orders(&self) -> usize {
-        self.orders.len()
+    /// The orders that the picture shows, direct first.
+    pub fn orders(&self) -> &[Order] {
+        &self.orders
     }
 
-    /// The greatest thickness of the image of order `k`, in pixels.
-    pub fn thickness(&self, k: usize) -> f64 {
-        self.orders.get(k).map_or(0.0, |order| order.thickness)
+    /// The first order that is thinner than the tolerance.
+    pub fn left_out(&self) -> Option<Thinness> {
+        self.left_out
     }
 
-    /// The largest error of the curves in the middle of a cell, in pixels.
-    pub fn error(&self) -> f64 {
+    /// What the curves may be off by, in pixels.
+    pub fn error(&self) -> EdgeError {
         self.error
+    }
+
+    /// How many nodes the curves have.
+    pub fn nodes(&self) -> usize {
+        self.orders.iter().map(Order::nodes).sum()
     }
 
     /// How many bytes a frame reads of the curves.
     pub fn bytes(&self) -> usize {
         let pieces = self.orders.iter().flat_map(|order| &order.pieces);
-        pieces
-            .map(|piece| (piece.inner.len() + piece.outer.len()) * size_of::<f64>())
-            .sum()
+        pieces.flatten().map(Piece::bytes).sum()
+    }
+
+    /// `κ − κ_c` of an edge's curve where the plane is met at `first`, φ₁ in [0, π], by the image of order `number`.
+    /// None where no picture was asked for it.
+    pub fn height(&self, number: u32, edge: Edge, first: f64) -> Option<f64> {
+        let order = self.orders.iter().find(|order| order.number == number)?;
+        let (sine, cosine) = (libm::sin(first).abs(), libm::cos(first));
+        let piece = order.pieces[usize::from(cosine < 0.0)].as_ref()?;
+        Some(piece.height(edge, place(sine, cosine)))
     }
 
     /// Whether the ray with inward part `z` and transverse length `s > 0` meets the disk, where `N = |n·p̂| s` and D
-    /// are the parts of the tangent of φ₁.
+    /// are the parts of the tangent of φ₁: a ray of the picture that the curves were drawn for.
     #[inline]
     pub fn meets(&self, z: f64, s: f64, n: f64, d: f64) -> bool {
         let excess = z - self.critical * s;
-        let beyond = usize::from(d < 0.0);
         let mut axis = None;
-        for (k, order) in self.orders.iter().enumerate() {
-            let piece = &order.pieces[beyond];
+        for piece in self.pieces(usize::from(d < 0.0)) {
             if excess < piece.lowest * s || excess > piece.highest * s {
                 continue;
             }
-            let x = *axis.get_or_insert_with(|| {
-                if d < 0.0 {
-                    -d / (n - d)
-                } else if n > 0.0 {
-                    n / (n + d)
-                } else {
-                    0.0
-                }
-            });
-            let scaled = if k == 0 && beyond == 0 {
-                excess * x
-            } else {
-                excess
-            };
-            let stencil = piece.axis.stencil(x);
-            if piece.within(scaled, s, &stencil) {
+            let x = *axis.get_or_insert_with(|| place(n, d));
+            if piece.meets(excess, s, x) {
                 return true;
             }
         }
         false
     }
-}
 
-impl Piece {
-    fn new(inner: &Nodes, outer: &Nodes, critical: f64) -> Self {
-        let count = inner.values.len();
-        let highest = (0..count)
-            .map(|i| inner.kappa(i))
-            .fold(f64::NEG_INFINITY, f64::max)
-            - critical;
-        let lowest = (0..count)
-            .map(|i| outer.kappa(i))
-            .fold(f64::INFINITY, f64::min)
-            - critical;
-        // Between the nodes a smooth curve may pass its nodes' extremes a little: by a share of the angle between
-        // them.
-        let (widest, narrowest) = (angle(critical + lowest), angle(critical + highest));
-        let margin = 0.01 * (widest - narrowest);
-        let cotangent = |angle: f64| libm::cos(angle) / libm::sin(angle) - critical;
-        let share = 0.01 * (highest - lowest);
-        let below = if widest + margin < PI {
-            (lowest - share).max(cotangent(widest + margin))
-        } else {
-            f64::NEG_INFINITY
-        };
-        let above = if narrowest > margin {
-            (highest + share).min(cotangent(narrowest - margin))
-        } else {
-            f64::INFINITY
-        };
-        Self {
-            axis: inner.axis(),
-            inner: inner.coefficients(),
-            outer: outer.coefficients(),
-            lowest: below,
-            highest: above,
-        }
-    }
-
+    /// The pieces of one quarter turn, order by order.
     #[inline]
-    fn within(&self, scaled: f64, s: f64, stencil: &Stencil) -> bool {
-        scaled >= s * value(&self.outer, stencil) && scaled <= s * value(&self.inner, stencil)
+    fn pieces(&self, quarter: usize) -> impl Iterator<Item = &Piece> {
+        self.orders
+            .iter()
+            .filter_map(move |order| order.pieces[quarter].as_ref())
     }
 }
 
-/// The quarter turn that a piece covers.
+/// The ray that reaches an edge in a given angle: its `κ − κ_c`, as right as the method's angles are. `angle` is
+/// above 0; it is the `φ₁ + kπ` of [`Isoradials::height`].
+pub fn height_at(sight: &Sight, edge: Edge, angle: f64, angles: &impl SweptAngles) -> f64 {
+    let target = Target::new(sight, edge);
+    target.solve(angle, target.first_guess(angle), angles)
+}
+
+/// How far an edge moves when every angle changes: `|∂ψ/∂φ|` of the curves of `sight` at most, in pixels per radian,
+/// from exact angles on the coarsest nodes.
+pub fn sensitivity(sight: &Sight, angles: &impl SweptAngles) -> f64 {
+    let mut most: f64 = 0.0;
+    for number in 0..MOST_ORDERS {
+        let drawn = Drawn::new(sight, number, f64::INFINITY, angles);
+        if number > 0 && drawn.thickness(sight) < sight.tolerance {
+            break;
+        }
+        most = most.max(drawn.sensitivity(sight));
+    }
+    most
+}
+
+/// Where on its quarter turn's axis a ray meets the plane, `tan φ₁ = n/d`.
+#[inline]
+fn place(n: f64, d: f64) -> f64 {
+    if d < 0.0 {
+        -d / (n - d)
+    } else if n > 0.0 {
+        n / (n + d)
+    } else {
+        0.0
+    }
+}
+
+/// The curves of one order on the nodes they were drawn on, inner and outer edge of each quarter turn.
+struct Drawn([Option<[Nodes; 2]>; 2]);
+
+impl Drawn {
+    fn new(sight: &Sight, number: u32, allowed: f64, angles: &impl SweptAngles) -> Self {
+        let [first, second] = sight.window.quarters();
+        let draw = |index: u32, x: (f64, f64)| {
+            let quarter = Quarter::new(number, index, x);
+            [Edge::Inner, Edge::Outer]
+                .map(|edge| Nodes::draw(&Target::new(sight, edge), quarter, sight, allowed, angles))
+        };
+        Self([first.map(|x| draw(0, x)), second.map(|x| draw(1, x))])
+    }
+
+    fn curves(&self) -> impl Iterator<Item = &Nodes> {
+        self.0.iter().flatten().flatten()
+    }
+
+    fn thickness(&self, sight: &Sight) -> f64 {
+        let pairs = self.0.iter().flatten();
+        pairs.fold(0.0, |most: f64, [inner, outer]| {
+            most.max(thickness(inner, outer, sight))
+        })
+    }
+
+    fn sensitivity(&self, sight: &Sight) -> f64 {
+        self.curves()
+            .fold(0.0, |most, nodes| most.max(nodes.sensitivity(sight)))
+    }
+
+    fn error(&self, sight: &Sight, angle_error: f64) -> EdgeError {
+        self.curves().fold(EdgeError::default(), |most, nodes| {
+            most.max(nodes.error(sight, angle_error))
+        })
+    }
+
+    /// The pieces that the picture shows any ray of.
+    fn pieces(self, sight: &Sight) -> [Option<Piece>; 2] {
+        let (low, high) = sight.heights();
+        self.0.map(|pair| {
+            pair.map(|[inner, outer]| Piece::new(inner, outer))
+                .filter(|piece| piece.lowest <= high && piece.highest >= low)
+        })
+    }
+}
+
+/// The part of a quarter turn that a piece covers.
 #[derive(Debug, Clone, Copy)]
 struct Quarter {
     /// Orbit angle at x = 0.
     start: f64,
     /// Whether h has a pole at x = 0.
     pole: bool,
+    /// Least and greatest x.
+    x: (f64, f64),
 }
 
 impl Quarter {
+    /// The quarter turn `index` (0 or 1) of order `number`, between two places. Those closer than a share of 1e-6
+    /// (a camera on the disk's axis meets its plane at one angle) are taken that far apart: nodes need a distance.
+    fn new(number: u32, index: u32, x: (f64, f64)) -> Self {
+        const CLOSEST: f64 = 1e-6;
+        let middle = (0.5 * (x.0 + x.1)).clamp(CLOSEST, 1.0 - CLOSEST);
+        Self {
+            start: f64::from(number) * PI + f64::from(index) * FRAC_PI_2,
+            pole: number == 0 && index == 0,
+            x: (x.0.min(middle - CLOSEST), x.1.max(middle + CLOSEST)),
+        }
+    }
+
+    /// The place at a share of the way, the ends exactly.
+    fn x_at(self, share: f64) -> f64 {
+        if share >= 1.0 {
+            self.x.1
+        } else {
+            self.x.0 + (self.x.1 - self.x.0) * share
+        }
+    }
+
     /// The orbit angle at x: `tan(φ − start) = x/(1 − x)`.
     fn angle(self, x: f64) -> f64 {
         self.start + libm::atan2(x, 1.0 - x)
     }
-}
 
-/// The angle between two rays of cotangents κ, in radians: without subtracting two angles.
-fn between(low: f64, high: f64) -> f64 {
-    if high.is_infinite() || low.is_infinite() {
-        return angle(low) - angle(high);
+    /// h over what is kept of it at x.
+    fn over_kept(self, x: f64) -> f64 {
+        if self.pole { 1.0 / x } else { 1.0 }
     }
-    libm::atan2(high - low, 1.0 + high * low)
-}
-
-/// The angle between a ray of cotangent κ and the hole's direction, in [0, π].
-fn angle(kappa: f64) -> f64 {
-    libm::atan2(1.0, kappa)
 }

@@ -1,7 +1,16 @@
 //! As many nodes of a curve as its pixels need.
+//!
+//! # Derivation
+//! Between the nodes runs a cubic spline, whose error is largest in the middle of a cell, `δ⁴|f⁗|/384` for cells of
+//! the width δ: there the truth is computed too, and the difference, in pixels, is what the nodes are doubled for
+//! until it is below the error asked for. The truth in the middle is itself only as good as the angles it is found
+//! from; an error δφ of an angle moves the curve by `|∂ψ/∂φ| δφ`, [`Nodes::sensitivity`] times δφ pixels at most.
+//!
+//! Cells in which the curve is nowhere in the picture need nothing.
 
+use super::sight::{Sight, angle, between};
 use super::solve::Target;
-use super::{Quarter, Sight};
+use super::{EdgeError, Quarter};
 use crate::orbit::path::SweptAngles;
 use crate::table::spline::{Axis, Scale, coefficients, value};
 
@@ -18,61 +27,69 @@ const MOST_CELLS: usize = 1 << 14;
 #[derive(Debug, Clone)]
 pub(super) struct Nodes {
     /// h, or `x h` in the piece with the pole.
-    pub(super) values: Vec<f64>,
-    quarter: Quarter,
-    critical: f64,
-    /// The largest error in the middle of a cell, in pixels.
-    pub(super) error: f64,
+    values: Vec<f64>,
+    pub(super) quarter: Quarter,
+    /// The largest interpolation error in the middle of a cell, in pixels.
+    interpolation: f64,
 }
 
 impl Nodes {
-    /// The curve of `target`, its nodes doubled until the error in the middle of every cell is a tenth of the
-    /// tolerance: the middles may miss the largest error, and the angles have one of their own. Once doubling no
-    /// longer helps, only the latter is left, and the curve is as good as it gets.
+    /// The curve of `target`, its nodes doubled until it is right to `allowed` pixels in the middle of every cell
+    /// that the picture shows, or as right as the angles are.
     pub(super) fn draw(
         target: &Target,
         quarter: Quarter,
         sight: &Sight,
+        allowed: f64,
         angles: &impl SweptAngles,
     ) -> Self {
         let mut nodes = Self::coarsest(target, quarter, angles);
+        if allowed.is_infinite() {
+            return nodes;
+        }
         loop {
             let (finer, error) = nodes.refined(target, sight, angles);
+            // Nodes and middles are off by as much as the angles and the arithmetic, which no node mends.
+            let noise = finer.noise(sight, angles.error());
             let settled = nodes.cells() >= SETTLED_CELLS
-                && error > 0.5 * nodes.error
-                && error <= 100.0 * sight.tolerance;
-            if error <= 0.1 * sight.tolerance || settled || finer.cells() >= MOST_CELLS {
-                nodes.error = error;
+                && error > 0.5 * nodes.interpolation
+                && error <= 100.0 * allowed;
+            if error <= allowed.max(2.0 * noise) || settled || finer.cells() >= MOST_CELLS {
+                nodes.interpolation = error;
                 return nodes;
             }
-            nodes = Self { error, ..finer };
+            nodes = Self {
+                interpolation: error,
+                ..finer
+            };
         }
+    }
+
+    /// How many nodes there are.
+    pub(super) fn count(&self) -> usize {
+        self.values.len()
     }
 
     fn cells(&self) -> usize {
         self.values.len() - 1
     }
 
-    fn x(&self, i: usize) -> f64 {
-        i as f64 / self.cells() as f64
+    /// x at node i.
+    pub(super) fn x(&self, i: usize) -> f64 {
+        self.quarter.x_at(i as f64 / self.cells() as f64)
     }
 
-    /// `κ` at node i; infinite at a pole.
-    pub(super) fn kappa(&self, i: usize) -> f64 {
-        let h = if self.quarter.pole {
-            self.values[i] / self.x(i)
-        } else {
-            self.values[i]
-        };
-        self.critical + h
+    /// `h = κ − κ_c` at node i; infinite at a pole.
+    pub(super) fn height(&self, i: usize) -> f64 {
+        self.values[i] * self.quarter.over_kept(self.x(i))
     }
 
-    pub(super) fn axis(&self) -> Scale {
-        Scale::new(Axis {
-            start: 0.0,
-            end: 1.0,
+    pub(super) fn axis(&self) -> Axis {
+        Axis {
+            start: self.quarter.x.0,
+            end: self.quarter.x.1,
             nodes: self.values.len() as u32,
-        })
+        }
     }
 
     pub(super) fn coefficients(&self) -> Vec<f64> {
@@ -84,11 +101,59 @@ impl Nodes {
         if count == self.values.len() {
             return self;
         }
-        let (spline, axis) = (self.coefficients(), self.axis());
+        let (spline, axis) = (self.coefficients(), Scale::new(self.axis()));
         let values = (0..count)
-            .map(|i| value(&spline, &axis.stencil(i as f64 / (count - 1) as f64)))
+            .map(|i| {
+                let x = self.quarter.x_at(i as f64 / (count - 1) as f64);
+                value(&spline, &axis.stencil(x))
+            })
             .collect();
         Self { values, ..self }
+    }
+
+    /// What the curve may be off by where the picture shows it, in pixels, from angles with an error of
+    /// `angle_error`.
+    pub(super) fn error(&self, sight: &Sight, angle_error: f64) -> EdgeError {
+        EdgeError {
+            interpolation: self.interpolation,
+            angles: self.sensitivity(sight) * angle_error,
+            rounding: self.rounding(sight),
+        }
+    }
+
+    fn noise(&self, sight: &Sight, angle_error: f64) -> f64 {
+        self.sensitivity(sight) * angle_error + self.rounding(sight)
+    }
+
+    /// `|∂ψ/∂φ|` where the picture shows the curve, at most, in pixels per radian of φ: from node to node.
+    pub(super) fn sensitivity(&self, sight: &Sight) -> f64 {
+        let visible = Visible::new(sight);
+        (1..self.count()).fold(0.0, |most: f64, i| {
+            let (before, after) = (self.height(i - 1), self.height(i));
+            let turn = self.quarter.angle(self.x(i)) - self.quarter.angle(self.x(i - 1));
+            most.max(visible.pixels(before, after, (before, after)) / turn)
+        })
+    }
+
+    /// What the rounding of a pixel's own `z/s` and of `κ_c` amounts to, some ε of each, `dψ = dκ/(1 + κ²)`.
+    fn rounding(&self, sight: &Sight) -> f64 {
+        const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
+        let (visible, critical) = (Visible::new(sight), sight.critical());
+        (1..self.count()).fold(0.0, |most: f64, i| {
+            let ends = (self.height(i - 1), self.height(i));
+            if !visible.reaches(ends) {
+                return most;
+            }
+            let h = ends.0.min(ends.1);
+            let kappa = critical + h;
+            let rounding = ROUNDINGS * (kappa.abs() + critical.abs()) / (1.0 + kappa * kappa);
+            // Infinite towards the hole or away from it, where ψ is exact.
+            if rounding.is_finite() {
+                most.max(rounding * sight.pixels_per_radian(angle(kappa)))
+            } else {
+                most
+            }
+        })
     }
 
     /// What is kept at x, from a guess of it.
@@ -103,53 +168,79 @@ impl Nodes {
             // φ → 0: w φ → u_d − u0, and x ~ φ.
             return (target.u_disk - target.u0) / target.slope_scale;
         }
-        let factor = if quarter.pole { x } else { 1.0 };
-        factor * target.solve(quarter.angle(x), guess / factor, angles)
+        let factor = quarter.over_kept(x);
+        target.solve(quarter.angle(x), guess * factor, angles) / factor
     }
 
     fn coarsest(target: &Target, quarter: Quarter, angles: &impl SweptAngles) -> Self {
         let mut values: Vec<f64> = Vec::with_capacity(FEWEST_CELLS + 1);
         for i in 0..=FEWEST_CELLS {
-            let x = i as f64 / FEWEST_CELLS as f64;
-            // Flat space to begin with, where u = u0 cos φ + w sin φ; then the last value.
-            let guess = values.last().copied().unwrap_or_else(|| {
-                let angle = quarter.angle(x);
-                let flat = (target.u_disk / target.u0 - libm::cos(angle))
-                    / libm::sin(angle).abs().max(0.1);
-                if quarter.start > 2.0 {
-                    -target.critical.abs() * libm::exp(-angle)
-                } else {
-                    flat - target.critical
-                }
-            });
+            let x = quarter.x_at(i as f64 / FEWEST_CELLS as f64);
+            let guess = values
+                .last()
+                .copied()
+                .unwrap_or_else(|| target.first_guess(quarter.angle(x)) / quarter.over_kept(x));
             values.push(Self::solve(target, quarter, x, guess, angles));
         }
         Self {
             values,
             quarter,
-            critical: target.critical,
-            error: f64::INFINITY,
+            interpolation: f64::INFINITY,
         }
     }
 
     /// Twice the cells, and how far the present curve was off on the new nodes, in pixels.
     fn refined(&self, target: &Target, sight: &Sight, angles: &impl SweptAngles) -> (Self, f64) {
-        let (spline, axis) = (self.coefficients(), self.axis());
+        let (spline, axis) = (self.coefficients(), Scale::new(self.axis()));
+        let visible = Visible::new(sight);
         let mut values = Vec::with_capacity(2 * self.cells() + 1);
         let mut error: f64 = 0.0;
         for i in 0..self.cells() {
             values.push(self.values[i]);
-            let x = (i as f64 + 0.5) / self.cells() as f64;
+            let x = self.quarter.x_at((i as f64 + 0.5) / self.cells() as f64);
             let guess = value(&spline, &axis.stencil(x));
             let truth = Self::solve(target, self.quarter, x, guess, angles);
             values.push(truth);
-            let factor = if self.quarter.pole { 1.0 / x } else { 1.0 };
-            let kappa = self.critical + truth * factor;
-            // dψ = dκ/(1 + κ²) for κ = cot ψ.
-            error = error
-                .max((guess - truth).abs() * factor / (1.0 + kappa * kappa) / sight.pixel_angle);
+            let factor = self.quarter.over_kept(x);
+            let ends = (self.height(i), self.height(i + 1));
+            error = error.max(visible.pixels(guess * factor, truth * factor, ends));
         }
         values.push(self.values[self.cells()]);
         (Self { values, ..*self }, error)
+    }
+}
+
+/// What the picture shows of a curve.
+struct Visible<'a> {
+    sight: &'a Sight,
+    heights: (f64, f64),
+}
+
+impl<'a> Visible<'a> {
+    fn new(sight: &'a Sight) -> Self {
+        Self {
+            sight,
+            heights: sight.heights(),
+        }
+    }
+
+    /// Whether the picture shows any ray of an interval of h.
+    fn reaches(&self, h: (f64, f64)) -> bool {
+        h.0.min(h.1) <= self.heights.1 && h.0.max(h.1) >= self.heights.0
+    }
+
+    /// The distance of two rays in pixels, 0 where the cell they lie in, from one of its ends to the other and as far
+    /// beyond as the two are apart, is not in the picture.
+    fn pixels(&self, a: f64, b: f64, ends: (f64, f64)) -> f64 {
+        let apart = (a - b).abs();
+        let low = ends.0.min(ends.1).min(a).min(b) - apart;
+        let high = ends.0.max(ends.1).max(a).max(b) + apart;
+        if !self.reaches((low, high)) {
+            return 0.0;
+        }
+        let critical = self.sight.critical();
+        // The farthest from the hole's direction that the picture shows of it, where pixels are smallest.
+        let farthest = angle(critical + low.max(self.heights.0));
+        self.sight.pixels_per_radian(farthest) * between(a.min(b), a.max(b), critical)
     }
 }

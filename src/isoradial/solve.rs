@@ -1,5 +1,6 @@
 //! One point of an isoradial curve: the slope that carries a ray to a radius in a given angle.
 
+use super::{Edge, Sight};
 use crate::orbit::Fate;
 use crate::orbit::invariants::Orbit;
 use crate::orbit::path::{Crossings, SweptAngles};
@@ -16,6 +17,30 @@ pub(super) struct Target {
 }
 
 impl Target {
+    /// An edge of the disk, seen by the camera of `sight`.
+    pub(super) fn new(sight: &Sight, edge: Edge) -> Self {
+        Self {
+            u0: sight.u0,
+            slope_scale: sight.slope_scale,
+            critical: sight.critical(),
+            u_disk: match edge {
+                Edge::Inner => sight.u_inner,
+                Edge::Outer => sight.u_outer,
+            },
+        }
+    }
+
+    /// A guess of h for the ray that meets the radius at `angle`: flat space's ray in the first half turn, where `u =
+    /// u0 cos φ + w sin φ`, and the rings' decay towards the critical ray beyond.
+    pub(super) fn first_guess(&self, angle: f64) -> f64 {
+        if angle < core::f64::consts::PI {
+            let flat = (self.u_disk / self.u0 - libm::cos(angle)) / libm::sin(angle).max(0.1);
+            flat - self.critical
+        } else {
+            -self.critical.abs() * libm::exp(-angle)
+        }
+    }
+
     /// The orbit with `κ = κ_c + h`. `Δ = (w − w_c)(w + w_c)` from h itself: exact however close to critical.
     fn orbit(&self, h: f64) -> Orbit {
         let excess = self.slope_scale * h;

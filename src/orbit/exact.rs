@@ -15,6 +15,11 @@ pub struct Exact;
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
 impl SweptAngles for Exact {
+    /// Some units in the last place of an angle of some radians.
+    fn error(&self) -> f64 {
+        16.0 * f64::EPSILON
+    }
+
     fn direct(&self, orbit: &Orbit, from: Point, to: Point) -> f64 {
         match orbit.family {
             Family::Monotone => without_turning_point(orbit.e2, orbit.delta, from.u, to.u),

@@ -15,6 +15,9 @@ pub trait SweptAngles: Sync {
     /// that have one.
     fn around(&self, orbit: &Orbit, from: Point, to: Point) -> f64;
 
+    /// The largest error of an angle, in radians, beside what rounding the ray's own two numbers does to it.
+    fn error(&self) -> f64;
+
     /// The angle from the start of `orbit` to its end.
     fn to_end(&self, orbit: &Orbit) -> f64 {
         if turns(orbit) {

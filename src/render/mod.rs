@@ -1,6 +1,7 @@
 //! Frames: white where a pixel's centre sees the disk at any order, black elsewhere.
 
 pub mod mask;
+pub mod needs;
 pub mod pixelwise;
 pub mod png;
 

@@ -180,6 +180,12 @@ impl View {
         self.n_a
     }
 
+    /// D over `t_a`, where `tan φ₁ = N/D`, `N = |n·p̂| s`: n·â, with the sign of the normal that points away from the
+    /// camera. (n and −n are the same plane; of the two this one has N ≥ 0.)
+    pub fn plane_slope(&self) -> f64 {
+        if self.n_p > 0.0 { -self.n_a } else { self.n_a }
+    }
+
     /// The inward part z as a function of (X, Y).
     pub fn z(&self) -> Affine {
         self.z
@@ -248,9 +254,7 @@ impl View {
         if self.n_p == 0.0 {
             return 0.0;
         }
-        let n_t = self.n_a * ta;
-        // n and −n are the same plane; n·p̂ taken positive puts the angle between 0 and π.
-        let angle = libm::atan2(self.n_p.abs() * s, if self.n_p > 0.0 { -n_t } else { n_t });
+        let angle = libm::atan2(self.n_p.abs() * s, self.plane_slope() * ta);
         if angle < std::f64::consts::PI {
             angle
         } else {

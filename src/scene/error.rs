@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use super::builtin::builtins;
-use super::validate::{FARTHEST_CAMERA, ISCO_RADIUS, MAX_IMAGE_SIDE, MAX_PIXELS, WIDEST_DISK};
+use super::validate::{
+    FARTHEST_CAMERA, ISCO_RADIUS, MAX_IMAGE_SIDE, MAX_PIXELS, MAX_TOLERANCE, WIDEST_DISK,
+};
 
 /// Why a scene is refused: what is wrong, what is allowed, and why.
 #[derive(Debug, thiserror::Error)]
@@ -122,6 +124,14 @@ pub enum SceneError {
         width: u32,
         /// Rows.
         height: u32,
+    },
+    /// The edges' tolerance is not allowed.
+    #[error(
+        "image.tolerance = {tolerance:?} is not allowed: it is what an edge may be off by, above 0 and at most {MAX_TOLERANCE} pixel; 0.001 is the default"
+    )]
+    Tolerance {
+        /// What was asked for, in pixels.
+        tolerance: f64,
     },
     /// The scene asks for antialiasing.
     #[error(

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 
-use super::{Scene, SceneError};
+use super::{DEFAULT_TOLERANCE, Scene, SceneError};
 
 /// The whole file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -47,10 +47,16 @@ pub(super) struct ImageTable {
     pub(super) height: i64,
     #[serde(default)]
     pub(super) antialias: bool,
+    #[serde(default = "default_tolerance")]
+    pub(super) tolerance: f64,
 }
 
 fn hole() -> [f64; 3] {
     [0.0; 3]
+}
+
+fn default_tolerance() -> f64 {
+    DEFAULT_TOLERANCE
 }
 
 fn plus_z() -> [f64; 3] {
@@ -98,6 +104,7 @@ impl From<&Scene> for SceneFile {
                 width: i64::from(scene.image.width),
                 height: i64::from(scene.image.height),
                 antialias: false,
+                tolerance: scene.tolerance,
             },
         }
     }
@@ -124,7 +131,8 @@ impl fmt::Display for SceneFile {
         writeln!(f, "\n[image]")?;
         writeln!(f, "width = {}", image.width)?;
         writeln!(f, "height = {}", image.height)?;
-        writeln!(f, "antialias = {}", image.antialias)
+        writeln!(f, "antialias = {}", image.antialias)?;
+        writeln!(f, "tolerance = {:?}", image.tolerance)
     }
 }
 
@@ -146,6 +154,7 @@ mod tests {
         assert_eq!(file.camera.up, [0.0, 0.0, 1.0]);
         assert_eq!(file.disk.normal, [0.0, 0.0, 1.0]);
         assert!(!file.image.antialias);
+        assert_eq!(file.image.tolerance, 0.001);
     }
 
     #[test]

@@ -20,6 +20,7 @@
 //! width  = 1920                      # required
 //! height = 1080                      # required
 //! antialias = false                  # default
+//! tolerance = 0.001                  # default; what an edge may be off by, in pixels; 0 < tolerance ≤ 1
 //! ```
 //!
 //! Lengths are in Schwarzschild radii, directions have any length but zero.
@@ -41,11 +42,15 @@ pub use builtin::{Builtin, builtins};
 pub use camera::{Affine, PixelRay, View};
 pub use error::SceneError;
 pub use validate::{
-    FARTHEST_CAMERA, HORIZON_RADIUS, ISCO_RADIUS, MAX_IMAGE_SIDE, MAX_PIXELS, WIDEST_DISK,
+    FARTHEST_CAMERA, HORIZON_RADIUS, ISCO_RADIUS, MAX_IMAGE_SIDE, MAX_PIXELS, MAX_TOLERANCE,
+    WIDEST_DISK,
 };
 
 /// The name of the scene rendered where none is asked for.
 pub const DEFAULT_SCENE: &str = "classic";
+
+/// What an edge may be off by where nothing else is asked for, in pixels: no 8-bit picture shows a thousandth of one.
+pub const DEFAULT_TOLERANCE: f64 = 1e-3;
 
 /// A static observer's camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -98,6 +103,7 @@ pub struct Scene {
     camera: Camera,
     disk: Disk,
     image: ImageSize,
+    tolerance: f64,
 }
 
 impl Scene {
@@ -151,6 +157,15 @@ impl Scene {
         Ok(Self { image, ..*self })
     }
 
+    /// The same scene with its edges right to so many pixels.
+    ///
+    /// # Errors
+    /// [`SceneError::Tolerance`] for a tolerance that is not allowed.
+    pub fn with_tolerance(&self, pixels: f64) -> Result<Self, SceneError> {
+        let tolerance = validate::tolerance(pixels)?;
+        Ok(Self { tolerance, ..*self })
+    }
+
     /// The scene's TOML form with every key written out; [`Scene::from_toml`] reads the same scene back.
     pub fn to_toml(&self) -> String {
         file::SceneFile::from(self).to_string()
@@ -169,6 +184,11 @@ impl Scene {
     /// The picture's size.
     pub fn image(&self) -> ImageSize {
         self.image
+    }
+
+    /// What an edge may be off by, in pixels.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
     }
 }
 

@@ -23,6 +23,9 @@ pub const WIDEST_DISK: f64 = 1e100;
 /// The most pixels on a side of a picture.
 pub const MAX_IMAGE_SIDE: i64 = 1_000_000;
 
+/// The most that an edge may be off by, in pixels: with more than one, rings as thick as a pixel are left out.
+pub const MAX_TOLERANCE: f64 = 1.0;
+
 /// The most pixels of a picture, 2³¹.
 pub const MAX_PIXELS: i64 = 1 << 31;
 
@@ -54,6 +57,7 @@ pub(super) fn scene(file: SceneFile) -> Result<Scene, SceneError> {
     if image.antialias {
         return Err(SceneError::Antialias);
     }
+    let tolerance = tolerance(image.tolerance)?;
     let image = image_size(image.width, image.height)?;
 
     let radius = norm(camera.position);
@@ -71,7 +75,20 @@ pub(super) fn scene(file: SceneFile) -> Result<Scene, SceneError> {
         camera,
         disk,
         image,
+        tolerance,
     })
+}
+
+/// What an edge may be off by, in pixels: above 0, at most [`MAX_TOLERANCE`].
+///
+/// # Errors
+/// [`SceneError::Tolerance`].
+pub(super) fn tolerance(pixels: f64) -> Result<f64, SceneError> {
+    if pixels > 0.0 && pixels <= MAX_TOLERANCE {
+        Ok(pixels)
+    } else {
+        Err(SceneError::Tolerance { tolerance: pixels })
+    }
 }
 
 /// The picture's size, each side between 1 and [`MAX_IMAGE_SIDE`], at most [`MAX_PIXELS`] in all.
@@ -177,7 +194,7 @@ mod tests {
 
     const GOOD: &str = "[camera]\nposition = [20.0, 0.0, 5.0]\nfocus = [0.0, 0.0, 0.0]\nup = [0.0, 0.0, 1.0]\nfov = 40.0\n\
                         [disk]\ninner = 3.0\nouter = 12.0\nnormal = [0.0, 0.0, 1.0]\n\
-                        [image]\nwidth = 64\nheight = 36\nantialias = false\n";
+                        [image]\nwidth = 64\nheight = 36\nantialias = false\ntolerance = 0.001\n";
 
     /// The good scene with the keys' values replaced.
     fn changed(changes: &[(&str, &str)]) -> Result<Scene, SceneError> {
@@ -347,6 +364,19 @@ mod tests {
             &["image.width", "image.height", "2147483648"],
         );
         assert!(changed(&[("width", "65536"), ("height", "32768")]).is_ok());
+    }
+
+    #[test]
+    fn tolerances() {
+        for tolerance in ["0.0", "-0.001", "1.5", "nan", "inf"] {
+            refused(
+                &[("tolerance", tolerance)],
+                &["image.tolerance", "pixel", "0.001"],
+            );
+        }
+        for tolerance in ["1.0", "1", "1e-12", "5e-324"] {
+            assert!(changed(&[("tolerance", tolerance)]).is_ok(), "{tolerance}");
+        }
     }
 
     #[test]

@@ -38,7 +38,8 @@ pub fn generate(spec: &Spec, progress: &Progress<'_>) -> Option<Table<Memory>> {
     let numbers = numbers::<Cubic>(spec, &|| {
         progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
     });
-    let Measured { error, angles } = measure(spec, &Lookup::new(spec, &numbers, Cubic));
+    let lookup = Lookup::new(spec, &numbers, spec.tolerance, Cubic);
+    let Measured { error, angles } = measure(spec, &lookup);
     let metadata = Metadata {
         conventions: CONVENTIONS.into(),
         spec: spec.clone(),

@@ -5,6 +5,7 @@ use wide::f64x2;
 
 use super::generate::numbers;
 use super::lookup::Lookup;
+use super::measure::{Measured, measure};
 use super::spec::Spec;
 use super::spline::{self, Scale, Stencil, StencilPair};
 
@@ -34,22 +35,29 @@ pub struct Grid<K> {
     spec: Spec,
     numbers: Vec<f64>,
     kernel: K,
+    /// The largest error of a swept angle.
+    error: f64,
 }
 
 impl<K: Interpolation> Grid<K> {
-    /// The charts on the nodes of `spec`; `None` where it asks for a grid that no table can have.
+    /// The charts on the nodes of `spec`, and what error their angles have; `None` where it asks for a grid that no table can have.
     pub fn new(spec: &Spec, kernel: K) -> Option<Self> {
-        spec.is_sound().then(|| Self {
-            spec: spec.clone(),
-            numbers: numbers::<K>(spec, &|| ()),
-            kernel,
+        spec.is_sound().then(|| {
+            let numbers = numbers::<K>(spec, &|| ());
+            let lookup = Lookup::new(spec, &numbers, spec.tolerance, kernel);
+            let Measured { error, .. } = measure(spec, &lookup);
+            Self {
+                spec: spec.clone(),
+                numbers,
+                kernel,
+                error,
+            }
         })
     }
 
     /// The grid, ready for lookups.
     pub fn lookup(&self) -> Lookup<'_, K> {
-        let Self { spec, kernel, .. } = self;
-        Lookup::new(spec, &self.numbers, *kernel)
+        Lookup::new(&self.spec, &self.numbers, self.error, self.kernel)
     }
 
     /// How many bytes its numbers take.

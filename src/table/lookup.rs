@@ -25,6 +25,7 @@ pub struct Lookup<'a, K = Cubic> {
     radial: Chart<'a>,
     /// How the charts are read.
     kernel: PhantomData<K>,
+    error: f64,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -62,8 +63,9 @@ impl<'a> Chart<'a> {
 }
 
 impl<'a, K: Interpolation> Lookup<'a, K> {
-    /// The charts within `numbers`, which are exactly as many as `spec` and `kernel` say.
-    pub(crate) fn new(spec: &Spec, numbers: &'a [f64], _kernel: K) -> Self {
+    /// The charts within `numbers`, which are exactly as many as `spec` and `kernel` say; `error` is that of their
+    /// angles.
+    pub(crate) fn new(spec: &Spec, numbers: &'a [f64], error: f64, _kernel: K) -> Self {
         let nodes = spec.critical_axes().orbit.nodes as usize;
         let (amplitude, mut rest) = numbers.split_at(nodes + K::BEYOND);
         let mut take = |axes| Chart::take(&mut rest, axes, K::BEYOND);
@@ -74,6 +76,7 @@ impl<'a, K: Interpolation> Lookup<'a, K> {
             trapped: take(spec.trapped_axes()),
             radial: take(spec.radial_axes()),
             kernel: PhantomData,
+            error,
         }
     }
 
@@ -128,6 +131,11 @@ impl Pair {
 }
 
 impl<K: Interpolation> SweptAngles for Lookup<'_, K> {
+    /// As measured when the table was made.
+    fn error(&self) -> f64 {
+        self.error
+    }
+
     #[inline]
     fn direct(&self, orbit: &Orbit, from: Point, to: Point) -> f64 {
         if orbit.e2 > UPPER_E2 {

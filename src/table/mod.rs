@@ -82,7 +82,8 @@ impl<B: FixedBytes> Table<B> {
     pub fn lookup(&self) -> Lookup<'_> {
         // The cast was checked when the table was opened, and the bytes are where they were.
         let numbers = format::numbers(self.bytes(), self.layout.numbers_at).unwrap_or_default();
-        Lookup::new(&self.layout.metadata.spec, numbers, Cubic)
+        let metadata = &self.layout.metadata;
+        Lookup::new(&metadata.spec, numbers, metadata.measured_error, Cubic)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use core::f64::consts::PI;
 
-use darkness::isoradial::Isoradials;
+use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
 use darkness::orbit::path::SweptAngles;
 use darkness::orbit::{EventKind, Orbits, Ray};
@@ -12,7 +12,8 @@ use darkness::scene::{Scene, View};
 /// The frame from isoradial curves.
 pub(crate) fn by_curves(scene: &Scene, angles: &impl SweptAngles) -> Vec<u8> {
     let view = View::new(scene);
-    let curves = Isoradials::new(&mask::sight(scene, &view), angles);
+    let sight = Sight::new(scene, &view, scene.tolerance());
+    let curves = Isoradials::new(&sight, angles);
     mask::render(&view, &curves).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -67,7 +68,7 @@ fn is_on_an_edge(scene: &Scene, view: &View, i: usize, j: usize) -> bool {
 }
 
 /// How many pixels of two frames of `scene` differ; every one of them must lie on an edge, within a thousandth of a
-/// pixel, which is what the curves promise ([`mask::TOLERANCE`]).
+/// pixel, which is what the curves promise ([`darkness::scene::DEFAULT_TOLERANCE`]).
 pub(crate) fn differing(name: &str, scene: &Scene, a: &[u8], b: &[u8]) -> usize {
     let view = View::new(scene);
     let width = view.width() as usize;

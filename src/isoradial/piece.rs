@@ -1,0 +1,111 @@
+//! A quarter turn of both edges' curves, ready for frames.
+
+use super::Edge;
+use super::nodes::Nodes;
+use super::sight::Sight;
+use crate::table::spline::{Scale, Stencil, bounds, value};
+
+/// A quarter turn of both curves, as splines in x of `h` (or `x h` where h has a pole).
+#[derive(Debug, Clone)]
+pub(super) struct Piece {
+    axis: Scale,
+    /// Whether h has a pole at x = 0, and `x h` is kept.
+    pole: bool,
+    pub(super) inner: Vec<f64>,
+    pub(super) outer: Vec<f64>,
+    /// No ray of this piece meets the disk with `h` below this
+    pub(super) lowest: f64,
+    /// or above this.
+    pub(super) highest: f64,
+}
+
+impl Piece {
+    /// The piece between two curves drawn over the same x, on as many nodes as the finer one has.
+    pub(super) fn new(inner: Nodes, outer: Nodes) -> Self {
+        let count = inner.count().max(outer.count());
+        let (inner, outer) = (inner.with_count(count), outer.with_count(count));
+        let mut piece = Self {
+            axis: Scale::new(inner.axis()),
+            pole: inner.quarter.pole,
+            inner: inner.coefficients(),
+            outer: outer.coefficients(),
+            lowest: f64::INFINITY,
+            highest: f64::NEG_INFINITY,
+        };
+        for cell in 1..count {
+            let x = (inner.x(cell - 1), inner.x(cell));
+            piece.lowest = piece.lowest.min(piece.bounds(&piece.outer, x).0);
+            piece.highest = piece.highest.max(piece.bounds(&piece.inner, x).1);
+        }
+        piece
+    }
+
+    /// Bounds of h over an interval of x.
+    pub(super) fn bounds(&self, coefficients: &[f64], x: (f64, f64)) -> (f64, f64) {
+        let values = bounds(coefficients, self.axis, x);
+        if self.pole { over(values, x) } else { values }
+    }
+
+    /// Whether a ray with `z − κ_c s = excess` meets the disk at x.
+    #[inline]
+    pub(super) fn meets(&self, excess: f64, s: f64, x: f64) -> bool {
+        let scaled = if self.pole { excess * x } else { excess };
+        let stencil = self.axis.stencil(x);
+        scaled >= s * value(&self.outer, &stencil) && scaled <= s * value(&self.inner, &stencil)
+    }
+
+    /// h of one edge at x.
+    pub(super) fn height(&self, edge: Edge, x: f64) -> f64 {
+        let stencil: Stencil = self.axis.stencil(x);
+        let coefficients = match edge {
+            Edge::Inner => &self.inner,
+            Edge::Outer => &self.outer,
+        };
+        let kept = value(coefficients, &stencil);
+        if self.pole { kept / x } else { kept }
+    }
+
+    /// How many nodes both curves have together.
+    pub(super) fn nodes(&self) -> usize {
+        // A spline has two coefficients more than nodes.
+        self.inner.len() + self.outer.len() - 4
+    }
+
+    /// How many bytes a frame reads of it.
+    pub(super) fn bytes(&self) -> usize {
+        (self.inner.len() + self.outer.len()) * size_of::<f64>()
+    }
+}
+
+/// The greatest distance between two curves drawn over the same x, in pixels.
+pub(super) fn thickness(inner: &Nodes, outer: &Nodes, sight: &Sight) -> f64 {
+    let count = inner.count().min(outer.count());
+    // Nodes are doubled: those of the coarser curve are nodes of the finer one too.
+    let (step_inner, step_outer) = (
+        (inner.count() - 1) / (count - 1),
+        (outer.count() - 1) / (count - 1),
+    );
+    (0..count).fold(0.0, |thickness: f64, i| {
+        let (high, low) = (inner.height(i * step_inner), outer.height(i * step_outer));
+        thickness.max(sight.pixels((low, high)))
+    })
+}
+
+/// The quotients of an interval by one of numbers ≥ 0.
+fn over(values: (f64, f64), x: (f64, f64)) -> (f64, f64) {
+    let low = if values.0 >= 0.0 {
+        values.0 / x.1
+    } else {
+        values.0 / x.0
+    };
+    let high = if values.1 >= 0.0 {
+        values.1 / x.0
+    } else {
+        values.1 / x.1
+    };
+    // 0/0, where nothing is known.
+    (
+        if low.is_nan() { f64::NEG_INFINITY } else { low },
+        if high.is_nan() { f64::INFINITY } else { high },
+    )
+}

@@ -1,0 +1,166 @@
+//! What curves are drawn for: one camera radius, one disk, and how much of the sky a picture shows, how large.
+//!
+//! # Pixels
+//! In a flat picture of pixels with the height p in the plane at distance 1, a radian at the angle θ from the centre is
+//! at most `1/(p cos²θ)` pixels, whichever way it points. A ray at the angle ψ from the hole's direction is at `θ ≤
+//! min(ψ + a, c)`, a being the angle between the picture's centre and the hole, c that between the centre and the
+//! corners: so a radian there is at most [`Sight::pixels_per_radian`]`(ψ) = 1/(p cos² min(ψ + a, c))` pixels.
+
+use core::f64::consts::PI;
+
+use super::range::Bundle;
+use crate::orbit::invariants::{critical_slope, three_u_minus_two};
+use crate::scene::{Scene, View};
+
+/// What the curves are drawn for: one camera radius, one disk, one picture or several of the same radius.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sight {
+    /// The camera's inverse radius.
+    pub u0: f64,
+    /// `u0 √(1 − u0)`: du/dφ over κ.
+    pub slope_scale: f64,
+    /// Inverse radius of the disk's inner edge.
+    pub u_inner: f64,
+    /// Inverse radius of the disk's outer edge.
+    pub u_outer: f64,
+    /// A pixel's height in the plane at distance 1.
+    pub pixel: f64,
+    /// The angle between the picture's centre and the hole's direction, in radians.
+    pub axis: f64,
+    /// The angle between the picture's centre and its corners, in radians.
+    pub corner: f64,
+    /// The rays that the picture shows.
+    pub window: Bundle,
+    /// What an edge may be off by, in pixels.
+    pub tolerance: f64,
+}
+
+impl Sight {
+    /// What the picture of `scene` asks for, its edges right to `tolerance` pixels.
+    pub fn new(scene: &Scene, view: &View, tolerance: f64) -> Self {
+        let centre = view.ray_at(0.0, 0.0);
+        let (x, y) = (view.x_at(0.0), view.y_at(0.0));
+        let axis = libm::atan2(centre.transverse(), centre.z);
+        let corner = libm::atan((x * x + y * y).sqrt());
+        let (width, height) = (f64::from(view.width()), f64::from(view.height()));
+        Self {
+            tolerance,
+            pixel: (view.y_at(0.0) - view.y_at(1.0)).abs(),
+            axis,
+            corner,
+            window: window(
+                Bundle::new(view, (0.0, width), (0.0, height)),
+                view,
+                axis,
+                corner,
+            ),
+            ..Self::all_round(
+                view.u0(),
+                view.slope_scale(),
+                (scene.disk().inner, scene.disk().outer),
+            )
+        }
+    }
+
+    /// All rays of a camera at inverse radius `u0` (`slope_scale` is `u0 √(1 − u0)`), to be drawn for pixels of one
+    /// radian: for [`Sight::pixel`] and [`Sight::tolerance`] to be set.
+    pub fn all_round(u0: f64, slope_scale: f64, (inner, outer): (f64, f64)) -> Self {
+        Self {
+            u0,
+            slope_scale,
+            u_inner: 1.0 / inner,
+            u_outer: 1.0 / outer,
+            pixel: 1.0,
+            axis: 0.0,
+            corner: 0.0,
+            window: Bundle::ALL,
+            tolerance: 1.0,
+        }
+    }
+
+    /// κ of the critical ray: towards the hole from outside the photon sphere, away from it from inside.
+    pub fn critical(&self) -> f64 {
+        let size = critical_slope(self.u0) / self.slope_scale;
+        if three_u_minus_two(self.u0) < 0.0 {
+            size
+        } else {
+            -size
+        }
+    }
+
+    /// The most pixels that a radian is, for rays at the angle `psi` from the hole's direction or closer to it (see
+    /// the [module's page](self)).
+    pub fn pixels_per_radian(&self, psi: f64) -> f64 {
+        let cosine = libm::cos((psi + self.axis).min(self.corner));
+        1.0 / (self.pixel * cosine * cosine)
+    }
+
+    /// How far apart two rays of one plane are in the picture, at most: in pixels, from their distances `κ − κ_c`
+    /// from the critical ray.
+    pub fn pixels(&self, h: (f64, f64)) -> f64 {
+        let critical = self.critical();
+        let (low, high) = (h.0.min(h.1), h.0.max(h.1));
+        self.pixels_per_radian(angle(critical + low)) * between(low, high, critical)
+    }
+
+    /// Least and greatest `h = κ − κ_c` that the picture shows.
+    pub(super) fn heights(&self) -> (f64, f64) {
+        let (low, high) = self.window.kappa;
+        (low - self.critical(), high - self.critical())
+    }
+}
+
+/// The rays of the whole picture, from its bundle where that tells anything, and from the circle about its centre.
+fn window(bundle: Option<Bundle>, view: &View, axis: f64, corner: f64) -> Bundle {
+    // Of the bounds' own rounding nothing may be cut off.
+    const PAD: f64 = 1e-12;
+    let most = view.n_a() / view.n_p().abs();
+    let bundle = bundle.unwrap_or(Bundle {
+        cotangent: if most.is_nan() {
+            (0.0, 0.0)
+        } else {
+            (-most, most)
+        },
+        ..Bundle::ALL
+    });
+    let cotangent_at = |psi: f64| {
+        if psi <= 0.0 {
+            f64::INFINITY
+        } else if psi >= PI {
+            f64::NEG_INFINITY
+        } else {
+            libm::cos(psi) / libm::sin(psi)
+        }
+    };
+    let (widest, narrowest) = (axis + corner, axis - corner);
+    let (low, high) = (
+        bundle.kappa.0.max(cotangent_at(widest * (1.0 + PAD))),
+        bundle.kappa.1.min(cotangent_at(narrowest - PAD * axis)),
+    );
+    let (least, greatest) = bundle.cotangent;
+    let shifted = |value: f64, pad: f64| {
+        if value.is_finite() {
+            value - pad * (1.0 + value.abs())
+        } else {
+            value
+        }
+    };
+    Bundle {
+        kappa: (shifted(low, PAD), shifted(high, -PAD)),
+        cotangent: (shifted(least, PAD), shifted(greatest, -PAD)),
+    }
+}
+
+/// The angle between a ray of cotangent κ and the hole's direction, in [0, π].
+pub(super) fn angle(kappa: f64) -> f64 {
+    libm::atan2(1.0, kappa)
+}
+
+/// The angle between two rays with `low ≤ high` for their `κ − κ_c`, in radians: without subtracting two angles.
+pub(super) fn between(low: f64, high: f64, critical: f64) -> f64 {
+    let (first, second) = (critical + low, critical + high);
+    if first.is_infinite() || second.is_infinite() {
+        return angle(first) - angle(second);
+    }
+    libm::atan2(high - low, 1.0 + first * second)
+}

@@ -1,0 +1,69 @@
+//! The least that a scene needs: which table, how many orders, how many nodes.
+//!
+//! # Derivation
+//! A scene names one number, [`Scene::tolerance`] T: what an edge may be off by, in pixels. The curves' share of it,
+//! and which orders are thicker than it, is told in [`crate::isoradial`]. The table's share is T/2: an error δφ of its
+//! angles moves an edge by `S δφ` pixels at most, S the [`sensitivity`] of this scene's curves, so that the smallest
+//! table which promises `δφ ≤ T/2S` is enough. S is small where pixels are large (S = 0.4 rad/rad over 4.8e-4 rad a
+//! pixel for `classic` at 1920 × 1080), and of the rings, whose angles all but stand still, smaller by e^{−π} with
+//! each order.
+
+use crate::isoradial::{Sight, sensitivity};
+use crate::orbit::exact::Exact;
+use crate::scene::{Scene, View};
+use crate::table::Spec;
+
+/// What a scene asks of its curves and of the angles that they are drawn from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Needs {
+    /// What the curves are drawn for.
+    pub sight: Sight,
+    /// How far an edge moves with the angles, in pixels per radian.
+    pub sensitivity: f64,
+    /// The tables that come with the program, coarsest first, and what each may displace an edge by.
+    pub tables: Vec<Candidate>,
+}
+
+/// A table that may do for a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Candidate {
+    /// One of [`Spec::NAMES`].
+    pub name: &'static str,
+    /// What it may displace an edge of the scene by, in pixels.
+    pub displacement: f64,
+    /// Whether that is within the scene's tolerance.
+    pub is_enough: bool,
+}
+
+impl Needs {
+    /// What `scene` needs.
+    pub fn new(scene: &Scene, view: &View) -> Self {
+        let sight = Sight::new(scene, view, scene.tolerance());
+        let sensitivity = sensitivity(&sight, &Exact);
+        let candidate = |name| {
+            let displacement = sensitivity * Spec::named(name)?.tolerance;
+            Some(Candidate {
+                name,
+                displacement,
+                is_enough: displacement <= 0.5 * sight.tolerance,
+            })
+        };
+        Self {
+            sight,
+            sensitivity,
+            tables: Spec::NAMES.into_iter().filter_map(candidate).collect(),
+        }
+    }
+
+    /// The smallest table that is enough; none where only exact angles are.
+    pub fn table(&self) -> Option<&Candidate> {
+        self.tables.iter().find(|candidate| candidate.is_enough)
+    }
+    /// What to do about a table that is not good enough, in words.
+    pub fn advice(&self) -> String {
+        self.table().map_or_else(
+            || "no table is good enough here, `--method exact` is".into(),
+            |candidate| format!("the {} table is good enough", candidate.name),
+        )
+    }
+}
