@@ -8,7 +8,12 @@ use darkness::chart::interleaved::rounds as run_rounds;
 /// Runs the contenders in turn, round after round, and prints for each the median time per item and the median of its
 /// ratio to the first contender in the same round.
 pub(crate) fn compare(title: &str, items: usize, rounds: usize, contenders: &mut [Contender<'_>]) {
-    let times = run_rounds(contenders, rounds, Duration::ZERO, &mut || ());
+    let times = run_rounds(
+        contenders,
+        rounds,
+        (Duration::ZERO, Duration::MAX),
+        &mut || (),
+    );
     println!("{title} ({rounds} rounds, sum {:.6e})", times.sum);
     for (i, contender) in contenders.iter().enumerate() {
         println!(

@@ -20,19 +20,24 @@ pub struct Times {
     pub sum: f64,
 }
 
-/// Runs the contenders in turn, `rounds` times over, on this thread; `round_done` is called after each round. A run
-/// shorter than `least` is repeated until it takes as long, within its turn, so that what a contender finds in the
-/// caches is its own.
+/// Runs the contenders in turn, `rounds` times over, on this thread; `round_done` is called after each round.
+///
+/// A run shorter than `least` is repeated until it takes as long, within its turn, so that what a contender finds in the
+/// caches is its own. No round but the first is begun after `most`.
 pub fn rounds(
     contenders: &mut [Contender<'_>],
     rounds: usize,
-    least: Duration,
+    (least, most): (Duration, Duration),
     round_done: &mut dyn FnMut(),
 ) -> Times {
     let mut seconds = vec![Vec::with_capacity(rounds); contenders.len()];
     let mut repeats = vec![1_u32; contenders.len()];
     let mut sum = 0.0;
+    let begun = Instant::now();
     for round in 0..=rounds {
+        if round > 1 && begun.elapsed() > most {
+            break;
+        }
         for (i, contender) in contenders.iter_mut().enumerate() {
             let start = Instant::now();
             for _ in 0..repeats[i] {
@@ -98,7 +103,7 @@ mod tests {
                 },
             ],
             3,
-            Duration::from_millis(5),
+            (Duration::from_millis(5), Duration::MAX),
             &mut || done += 1,
         );
         assert_eq!((long.get(), done), (4, 4));

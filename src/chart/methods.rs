@@ -6,6 +6,8 @@ use super::Effort;
 use crate::orbit::exact::Exact;
 use crate::orbit::integrate::{Adaptive, FixedStep, Scheme};
 use crate::orbit::{Orbits, Ray};
+use crate::render::pixelwise;
+use crate::scene::{Scene, View};
 use crate::table::{Cubic, Grid, Interpolation, Linear, Memory, Nearest, Spec, Table, generate};
 
 /// A way to answer what happens to a ray.
@@ -141,6 +143,69 @@ impl<'a> Contestant<'a> {
     }
 }
 
+/// A method that steps along rays, pixel by pixel.
+#[derive(Debug, Clone, Copy)]
+pub enum Stepper {
+    /// In equal steps.
+    Fixed(FixedStep),
+    /// In steps as long as a tolerance allows.
+    Adaptive(Adaptive),
+}
+
+impl Stepper {
+    /// Euler's method in steps of `h`.
+    pub fn euler(h: f64) -> Self {
+        Self::Fixed(FixedStep::new(Scheme::Euler, h))
+    }
+
+    /// RK4 in steps of `h`.
+    pub fn rk4(h: f64) -> Self {
+        Self::Fixed(FixedStep::new(Scheme::Rk4, h))
+    }
+
+    /// Adaptive integration to `tolerance`.
+    pub fn adaptive(tolerance: f64) -> Self {
+        Self::Adaptive(Adaptive::new(tolerance))
+    }
+
+    /// Which method it is.
+    pub fn method(&self) -> Method {
+        match self {
+            Self::Fixed(fixed) => match fixed.scheme {
+                Scheme::Euler => Method::Euler,
+                Scheme::Rk4 => Method::Rk4,
+            },
+            Self::Adaptive(_) => Method::Adaptive,
+        }
+    }
+
+    /// Its knob's setting, as words `name=value`.
+    pub fn setting(&self) -> String {
+        match self {
+            Self::Fixed(fixed) => format!("h={}", fixed.h),
+            Self::Adaptive(adaptive) => format!("tolerance={:e}", adaptive.tolerance),
+        }
+    }
+
+    /// The method.
+    pub fn orbits(&self) -> &dyn Orbits {
+        match self {
+            Self::Fixed(fixed) => fixed,
+            Self::Adaptive(adaptive) => adaptive,
+        }
+    }
+
+    /// Whether a pixel (column, row) of `scene` sees the disk; not where the method gives up.
+    pub fn sees(&self, scene: &Scene, view: &View, pixel: (u32, u32)) -> bool {
+        match self {
+            Self::Fixed(fixed) => pixelwise::sees_in_steps(scene, view, fixed, pixel),
+            Self::Adaptive(adaptive) => {
+                pixelwise::sees(scene, view, adaptive, pixel).unwrap_or_default()
+            }
+        }
+    }
+}
+
 /// The tables and grids that are compared, in memory.
 #[derive(Debug)]
 pub struct Tables {
@@ -189,6 +254,11 @@ impl Tables {
         })
     }
 
+    /// The three tables, as they are.
+    pub fn tables(&self) -> &[(Method, Table<Memory>)] {
+        &self.files
+    }
+
     /// The three tables.
     pub fn files(&self) -> impl Iterator<Item = Contestant<'_>> {
         self.files.iter().map(|(method, table)| {
@@ -205,11 +275,23 @@ impl Tables {
 
     /// The grid of the standard table's own size, read in all three ways.
     pub fn standard_grids(&self) -> impl Iterator<Item = Contestant<'_>> {
-        let nodes = Spec::named(STANDARD).map(|spec| spec.nodes());
-        self.grids
-            .iter()
-            .filter(move |grids| Some(grids.nodes) == nodes)
-            .flat_map(Grids::contestants)
+        self.standard().into_iter().flat_map(Grids::contestants)
+    }
+
+    /// The same as they are.
+    pub fn standard_grid(&self) -> Option<(&Grid<Nearest>, &Grid<Linear>, &Grid<Cubic>)> {
+        let Grids {
+            nearest,
+            linear,
+            cubic,
+            ..
+        } = self.standard()?;
+        Some((nearest, linear, cubic))
+    }
+
+    fn standard(&self) -> Option<&Grids> {
+        let nodes = Spec::named(STANDARD)?.nodes();
+        self.grids.iter().find(|grids| grids.nodes == nodes)
     }
 }
 

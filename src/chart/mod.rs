@@ -18,12 +18,16 @@ mod machine;
 pub mod methods;
 mod pareto;
 pub mod rays;
+pub mod scene;
 
 use core::fmt;
 
 pub use csv::write_csv;
 pub use machine::machine;
 use methods::{Method, Tables};
+
+use crate::render::RenderError;
+use crate::scene::Scene;
 
 /// How much is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,7 +39,21 @@ pub enum Effort {
 }
 
 /// Told how far the work has come: what is being done, and the share of the whole that is.
-pub type Progress<'a> = dyn Fn(&'static str, f64) + 'a;
+pub type Progress<'a> = dyn Fn(&'static str, f64) + Sync + 'a;
+
+/// Why nothing could be measured.
+#[derive(Debug, thiserror::Error)]
+pub enum ChartError {
+    /// A table that cannot be made.
+    #[error("a table to measure with cannot be made")]
+    Table,
+    /// The thread that times are taken on.
+    #[error("the thread to measure on cannot be started ({0})")]
+    Threads(String),
+    /// A frame that cannot be drawn.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+}
 
 /// A part of the chart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -123,20 +141,38 @@ pub struct Chart {
     pub rays: rays::Rays,
     /// The second.
     pub critical: critical::Critical,
+    /// The third.
+    pub frame: scene::Frame,
 }
 
 impl Chart {
-    /// Measures everything; `None` where a table cannot be made.
-    pub fn measure(effort: Effort, progress: &Progress<'_>) -> Option<Self> {
+    /// Measures everything, on the scene called `name` in the third panel.
+    ///
+    /// # Errors
+    /// [`ChartError`]
+    pub fn measure(
+        scene: &Scene,
+        name: String,
+        effort: Effort,
+        progress: &Progress<'_>,
+    ) -> Result<Self, ChartError> {
         progress("making tables", 0.0);
-        let tables = Tables::new(effort)?;
+        let tables = Tables::new(effort).ok_or(ChartError::Table)?;
         let rays = rays::Rays::measure(&tables, effort, &|share| {
             progress("timing rays", 0.05 + 0.4 * share);
         });
         let critical = critical::Critical::measure(&tables, effort, &|share| {
             progress("near-critical rays", 0.45 + 0.05 * share);
         });
-        Some(Self { rays, critical })
+        let step = rays.baseline_step;
+        let frame = scene::Frame::measure(scene, name, &tables, step, effort, &|share| {
+            progress("frames", 0.5 + 0.5 * share);
+        })?;
+        Ok(Self {
+            rays,
+            critical,
+            frame,
+        })
     }
 
     /// All measured points, panel after panel.
@@ -145,6 +181,10 @@ impl Chart {
             .points
             .iter()
             .chain(self.critical.points.iter().map(|point| &point.measurement))
+            .chain(self.frame.points.iter().flat_map(|point| {
+                let orders = point.orders.iter().filter(|order| order.count > 0);
+                orders.chain([&point.pixels])
+            }))
     }
 }
 

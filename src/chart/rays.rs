@@ -70,7 +70,7 @@ impl Rays {
         let times = rounds(
             &mut contenders,
             repetitions,
-            Duration::from_millis(2),
+            (Duration::from_millis(2), Duration::from_secs(90)),
             &mut || {
                 done += 1.0;
                 progress(done / (repetitions + 1) as f64);

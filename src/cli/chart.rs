@@ -1,6 +1,6 @@
 //! `darkness chart`: speed against accuracy, measured on this machine.
 
-use std::cell::Cell;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -8,7 +8,7 @@ use clap::Args;
 
 use super::picture::Destination;
 use super::progress::{Report, duration};
-use super::{Misuse, Threads, start_threads, target};
+use super::{Misuse, StdoutError, Threads, start_threads, target};
 use crate::chart::{Chart, Effort, draw, write_csv};
 use crate::output::write_whole;
 use crate::scene::{DEFAULT_SCENE, Scene};
@@ -37,7 +37,7 @@ pub(super) struct ChartArgs {
 
 /// Runs the verb.
 pub(super) fn run(args: &ChartArgs, report: Report) -> anyhow::Result<()> {
-    let _scene = Scene::load(&args.scene)?;
+    let scene = Scene::load(&args.scene)?;
     let destination = Destination::checked(args.output.clone(), "svg", &args.scene)?;
     if let Some(path) = &args.csv {
         check_csv(path, &args.output, &args.scene)?;
@@ -45,14 +45,7 @@ pub(super) fn run(args: &ChartArgs, report: Report) -> anyhow::Result<()> {
     start_threads(args.threads.threads)?;
 
     let start = Instant::now();
-    let chart = measure(
-        if args.quick {
-            Effort::Quick
-        } else {
-            Effort::Full
-        },
-        report,
-    )?;
+    let chart = measure(args, &scene, report)?;
     let svg = draw::svg(&chart)?;
     if let Some(path) = &args.csv {
         write_whole(path, |file| write_csv(&chart, file)).map_err(|error| {
@@ -60,9 +53,22 @@ pub(super) fn run(args: &ChartArgs, report: Report) -> anyhow::Result<()> {
         })?;
     }
     destination.write(svg.as_bytes())?;
+    let summary = format!("{}\n", chart.frame.summary());
+    match destination {
+        Destination::Stdout => report.note(summary.trim_end()),
+        Destination::File(_) => print(&summary)?,
+    }
     let time = duration(start.elapsed());
     report.note(format_args!("{destination}: measured and drawn in {time}"));
     Ok(())
+}
+
+fn print(text: &str) -> Result<(), StdoutError> {
+    let mut stdout = io::stdout().lock();
+    stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.flush())
+        .map_err(StdoutError)
 }
 
 /// Checks that the CSV can be written to `path`, and to nothing else that is read or written.
@@ -90,16 +96,19 @@ fn check_csv(path: &Path, figure: &Path, scene: &Path) -> anyhow::Result<()> {
 }
 
 /// Measures, with a bar.
-fn measure(effort: Effort, report: Report) -> anyhow::Result<Chart> {
+fn measure(args: &ChartArgs, scene: &Scene, report: Report) -> anyhow::Result<Chart> {
     const STEPS: f64 = 100.0;
     let bar = report.bar(STEPS as u64, "", "%");
-    let last = Cell::new(0.0);
     let progress = |what: &'static str, share: f64| {
         bar.set_message(what);
-        let share = share.max(last.get());
-        last.set(share);
         bar.set_position((share * STEPS) as u64);
     };
-    Chart::measure(effort, &progress)
-        .ok_or_else(|| anyhow::anyhow!("a table to measure cannot be made"))
+    let effort = if args.quick {
+        Effort::Quick
+    } else {
+        Effort::Full
+    };
+    let name = args.scene.file_stem().unwrap_or(args.scene.as_os_str());
+    let name = name.to_string_lossy().into_owned();
+    Ok(Chart::measure(scene, name, effort, &progress)?)
 }

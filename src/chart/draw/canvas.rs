@@ -130,13 +130,6 @@ impl Canvas<'_> {
         Ok(())
     }
 
-    /// A filled rectangle between two corners.
-    pub(super) fn block(&self, from: (f64, f64), to: (f64, f64), colour: RGBAColor) -> Drawn {
-        let corners = [point(from), point(to)];
-        self.0.draw(&Rectangle::new(corners, colour.filled()))?;
-        Ok(())
-    }
-
     pub(super) fn marker(
         &self,
         marker: Marker,

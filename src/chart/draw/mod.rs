@@ -5,6 +5,7 @@ mod canvas;
 mod critical;
 mod labels;
 mod rays;
+mod scene;
 mod style;
 
 use plotters::drawing::DrawingAreaErrorKind;
@@ -15,7 +16,7 @@ use style::{BLACK, GREY, bold, words};
 
 /// The page, in pixels.
 const WIDTH: u32 = 1000;
-const HEIGHT: u32 = 1320;
+const HEIGHT: u32 = 1900;
 
 /// Why a figure could not be drawn.
 #[derive(Debug, thiserror::Error)]
@@ -40,6 +41,7 @@ pub fn svg(chart: &Chart) -> Result<String, DrawError> {
         let made = format!("darkness {} on {}", env!("CARGO_PKG_VERSION"), machine());
         canvas.text(&made, (middle, 42.0), words(12.0, GREY), BELOW)?;
         rays::draw(canvas, &chart.rays, (72.0, 72.0))?;
-        critical::draw(canvas, &chart.critical, (72.0, 690.0))
+        critical::draw(canvas, &chart.critical, (72.0, 690.0))?;
+        scene::draw(canvas, &chart.frame, (72.0, 1290.0))
     })
 }

@@ -37,6 +37,8 @@ pub(super) struct Look {
     pub(super) marker: Marker,
     pub(super) dash: Option<(f64, f64)>,
     pub(super) label: &'static str,
+    /// The same, where there is little room.
+    pub(super) short: &'static str,
 }
 
 impl Look {
@@ -53,11 +55,20 @@ impl Look {
             Method::Linear => (GREEN, Marker::Plus, Some((4.0, 3.0)), "linear"),
             Method::Cubic => (GREY, Marker::Ring, Some((1.5, 2.5)), "cubic"),
         };
+        let short = match method {
+            Method::Adaptive => "adaptive",
+            Method::TableDraft => "draft",
+            Method::TableStandard => "standard",
+            Method::TableFine => "fine",
+            Method::Nearest => "nearest",
+            _ => label,
+        };
         Self {
             colour,
             marker,
             dash,
             label,
+            short,
         }
     }
 
