@@ -1,7 +1,7 @@
 //! Logarithmic axes, and the frame of a plot.
 
 use super::DrawError;
-use super::canvas::{BELOW, Canvas, LEFT_OF};
+use super::canvas::{BELOW, Canvas, LEFT_OF, RIGHT_BELOW};
 use super::style::{BLACK, GREY, LIGHT, bold, plain, words};
 
 /// A logarithmic axis: where its decades are on the page.
@@ -46,13 +46,52 @@ impl Axis {
         from + (to - from) * ((decade - low) / (high - low))
     }
 
-    /// The decades to be labelled: every one, or every second, third … where there is little room.
-    pub(super) fn ticks(self, spacing: f64) -> impl Iterator<Item = i32> {
+    /// The decades to be labelled: every one, or every second, third … where they are closer than `spacing` pixels.
+    pub(super) fn ticks(self, spacing: f64) -> Vec<Tick> {
         let (low, high) = (self.decades.0.ceil() as i32, self.decades.1.floor() as i32);
         let room = (self.pixels.1 - self.pixels.0).abs() / (self.decades.1 - self.decades.0);
         let every = (spacing / room).ceil().max(1.0) as i32;
-        (low..=high).filter(move |decade| decade % every == 0)
+        (low..=high)
+            .filter(|decade| decade % every == 0)
+            .map(|decade| Tick {
+                at: self.at_decade(f64::from(decade)),
+                words: power_of_ten(decade),
+            })
+            .collect()
     }
+
+    /// Round numbers evenly spread, `most` at most, for an axis shorter than a decade or two.
+    pub(super) fn even_ticks(self, most: f64) -> Vec<Tick> {
+        let (low, high) = (
+            libm::pow(10.0, self.decades.0),
+            libm::pow(10.0, self.decades.1),
+        );
+        let rough = (high - low) / most;
+        let power = libm::pow(10.0, libm::floor(libm::log10(rough)));
+        let steps = [1.0, 2.0, 5.0, 10.0].map(|step| step * power);
+        let step = steps
+            .into_iter()
+            .find(|step| *step >= rough)
+            .unwrap_or(rough);
+        let digits = (-libm::floor(libm::log10(step * 1.000_001))).max(0.0) as usize;
+        let first = (low / step).ceil() as i64;
+        let last = (high / step).floor() as i64;
+        (first..=last)
+            .map(|k| k as f64 * step)
+            .map(|value| Tick {
+                at: self.at(value),
+                words: format!("{value:.digits$}"),
+            })
+            .collect()
+    }
+}
+
+/// A place on an axis, and what it is called.
+#[derive(Debug, Clone)]
+pub(super) struct Tick {
+    /// In pixels.
+    pub(super) at: f64,
+    pub(super) words: String,
 }
 
 /// `10⁻⁹`.
@@ -99,27 +138,29 @@ impl Plot {
         )
     }
 
-    /// The lines of both axes' decades, their labels, and the frame.
+    /// The lines of the x axis' ticks and of the y axis' decades, their labels, and the frame.
     pub(super) fn frame(
         &self,
         canvas: &Canvas<'_>,
-        x_labels: bool,
+        x: &[Tick],
         y_labels: bool,
     ) -> Result<(), DrawError> {
-        let (left, top, right, bottom) = self.corners();
-        for decade in self.x.ticks(44.0) {
-            let x = self.x.at_decade(f64::from(decade));
-            canvas.line(&[(x, top), (x, bottom)], plain(LIGHT, 0.8))?;
-            if x_labels {
-                canvas.text(
-                    &power_of_ten(decade),
-                    (x, bottom + 5.0),
-                    words(12.0, BLACK),
-                    BELOW,
-                )?;
-            }
-        }
         self.rows(canvas, y_labels)?;
+        self.sides(canvas, x)
+    }
+
+    /// The lines of the x axis' ticks, their labels, and the frame.
+    pub(super) fn sides(&self, canvas: &Canvas<'_>, x: &[Tick]) -> Result<(), DrawError> {
+        let (left, top, right, bottom) = self.corners();
+        for tick in x {
+            canvas.line(&[(tick.at, top), (tick.at, bottom)], plain(LIGHT, 0.8))?;
+            canvas.text(
+                &tick.words,
+                (tick.at, bottom + 5.0),
+                words(12.0, BLACK),
+                BELOW,
+            )?;
+        }
         canvas.line(
             &[
                 (left, top),
@@ -135,16 +176,11 @@ impl Plot {
     /// The lines of the y axis' decades, and their labels.
     pub(super) fn rows(&self, canvas: &Canvas<'_>, labels: bool) -> Result<(), DrawError> {
         let (left, _, right, _) = self.corners();
-        for decade in self.y.ticks(18.0) {
-            let y = self.y.at_decade(f64::from(decade));
-            canvas.line(&[(left, y), (right, y)], plain(LIGHT, 0.8))?;
+        for tick in self.y.ticks(18.0) {
+            canvas.line(&[(left, tick.at), (right, tick.at)], plain(LIGHT, 0.8))?;
             if labels {
-                canvas.text(
-                    &power_of_ten(decade),
-                    (left - 6.0, y),
-                    words(12.0, BLACK),
-                    LEFT_OF,
-                )?;
+                let at = (left - 6.0, tick.at);
+                canvas.text(&tick.words, at, words(12.0, BLACK), LEFT_OF)?;
             }
         }
         Ok(())
@@ -159,23 +195,32 @@ impl Plot {
     }
 }
 
-/// A panel's title, and below it what it shows in one line.
+/// Letters of a caption's line: no wider than the page in any usual font.
+const LINE: usize = 146;
+
+/// A panel's title, and below it what it shows. Returns where that ends.
 pub(super) fn heading(
     canvas: &Canvas<'_>,
     at: (f64, f64),
     title: &str,
-    caption: &[&str],
-) -> Result<(), DrawError> {
-    let start = (
-        plotters::style::text_anchor::HPos::Left,
-        plotters::style::text_anchor::VPos::Top,
-    );
-    canvas.text(title, at, bold(16.0, BLACK), start)?;
-    for (i, line) in caption.iter().enumerate() {
-        let below = (at.0, at.1 + 22.0 + 16.0 * i as f64);
-        canvas.text(line, below, words(12.0, GREY), start)?;
+    caption: &str,
+) -> Result<f64, DrawError> {
+    canvas.text(title, at, bold(16.0, BLACK), RIGHT_BELOW)?;
+    let mut y = at.1 + 24.0;
+    let mut line = String::new();
+    for word in caption.split(' ') {
+        if line.chars().count() + word.chars().count() > LINE {
+            canvas.text(&line, (at.0, y), words(12.0, GREY), RIGHT_BELOW)?;
+            y += 16.0;
+            line.clear();
+        }
+        if !line.is_empty() {
+            line.push(' ');
+        }
+        line += word;
     }
-    Ok(())
+    canvas.text(&line, (at.0, y), words(12.0, GREY), RIGHT_BELOW)?;
+    Ok(y + 16.0)
 }
 
 #[cfg(test)]
@@ -187,6 +232,20 @@ mod tests {
         assert_eq!(power_of_ten(-12), "10⁻¹²");
         assert_eq!(power_of_ten(3), "10³");
         assert_eq!(power_of_ten(0), "1");
+    }
+
+    #[test]
+    fn short_axes_have_round_ticks() {
+        let axis = Axis {
+            decades: (libm::log10(10.3), libm::log10(14.9)),
+            pixels: (0.0, 100.0),
+        };
+        let words: Vec<_> = axis
+            .even_ticks(5.0)
+            .into_iter()
+            .map(|tick| tick.words)
+            .collect();
+        assert_eq!(words, ["11", "12", "13", "14"]);
     }
 
     #[test]

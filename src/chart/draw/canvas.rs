@@ -21,6 +21,10 @@ pub(super) const RIGHT_OF: Anchor = (HPos::Left, VPos::Center);
 pub(super) const LEFT_OF: Anchor = (HPos::Right, VPos::Center);
 /// About it.
 pub(super) const CENTRED: Anchor = (HPos::Center, VPos::Center);
+/// To its right, below it.
+pub(super) const RIGHT_BELOW: Anchor = (HPos::Left, VPos::Top);
+/// Centred above it.
+pub(super) const ABOVE: Anchor = (HPos::Center, VPos::Bottom);
 /// Below it.
 pub(super) const BELOW: Anchor = (HPos::Center, VPos::Top);
 

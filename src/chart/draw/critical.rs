@@ -2,7 +2,7 @@
 
 use super::DrawError;
 use super::axis::{Axis, Plot, heading, power_of_ten};
-use super::canvas::{BELOW, CENTRED, Canvas, LEFT_OF, RIGHT_OF};
+use super::canvas::{BELOW, Canvas, LEFT_OF, RIGHT_OF};
 use super::labels::{self, Label};
 use super::style::{BLACK, GREY, LIGHT, Look, Marker, bold, plain, words};
 use crate::chart::critical::{Critical, Place, Point, Side};
@@ -15,7 +15,7 @@ const HEIGHT: f64 = 380.0;
 const ROW: f64 = 13.0;
 
 /// Between the two closest distances, in decades each.
-const GAP: f64 = 0.6;
+const GAP: f64 = 0.8;
 
 /// Both sides' axis: the distance falls towards the middle from both ends.
 struct Mirrored {
@@ -50,6 +50,10 @@ fn series(critical: &Critical) -> Vec<Series<'_>> {
     let mut all: Vec<Series<'_>> = Vec::new();
     for point in &critical.points {
         let method = point.measurement.method;
+        // The standard table is cubic splines on the standard grid: one line for both.
+        if method == Method::Cubic {
+            continue;
+        }
         let (knob, _) = point
             .measurement
             .setting
@@ -58,7 +62,8 @@ fn series(critical: &Critical) -> Vec<Series<'_>> {
         let look = Look::of(method);
         let label = match method {
             Method::Euler | Method::Rk4 => format!("{} {}", look.label, knob.replace('=', " = ")),
-            Method::Adaptive => "adaptive 1e-9".into(),
+            Method::Adaptive => "adaptive 10⁻⁹".into(),
+            Method::TableStandard => "table standard = cubic".into(),
             _ => look.label.to_owned(),
         };
         match all.iter_mut().find(|series| series.label == label) {
@@ -79,26 +84,18 @@ fn series(critical: &Critical) -> Vec<Series<'_>> {
     all
 }
 
-/// Draws the panel below and to the right of `at`.
+/// Draws the panel below and to the right of `at`; returns where it ends.
 pub(super) fn draw(
     canvas: &Canvas<'_>,
     critical: &Critical,
     at: (f64, f64),
-) -> Result<(), DrawError> {
+) -> Result<f64, DrawError> {
     let (left, top) = at;
-    let caption = [
-        "Fate and angle of whole flights towards the photon sphere, from r = 1000, 30, 6, 2 and from 1.2 outwards: the largest error among the rays of one distance.",
-        "Grey line: what rounding a ray's own slope to a double does. The exact method and the tables answer for the very numbers they are given, and may lie below it.",
-    ];
-    heading(
-        canvas,
-        (left - 56.0, top),
-        "Critical: what is left of it beside the critical ray",
-        &caption,
-    )?;
+    let caption = "Fate and angle of whole flights towards the photon sphere, from r = 1000, 30, 6, 2 and from 1.2 outwards: the largest error among the rays of one distance. Crosses: an answer was wrong in kind. Grey line: what rounding a ray's own slope to a double does; exact and the tables answer for the very numbers they are given, and may lie below it.";
+    let title = "Critical: accuracy beside the critical ray";
+    let band = heading(canvas, (left - 56.0, top), title, caption)? + 8.0;
     let all = series(critical);
     let failing: Vec<_> = all.iter().filter(|series| series.fails()).collect();
-    let band = top + 68.0;
     let top = band + ROW * failing.len() as f64 + if failing.is_empty() { 0.0 } else { 8.0 };
     let bottom = top + HEIGHT;
     let errors = critical
@@ -120,51 +117,43 @@ pub(super) fn draw(
     };
     frame(canvas, &plot, &x, band)?;
 
-    for (side, anchor_x) in [
-        (Side::Escape, left + 8.0),
-        (Side::Capture, left + WIDTH - 8.0),
-    ] {
-        let line: Vec<_> = critical
+    let rounding = [Side::Escape, Side::Capture].map(|side| {
+        let here = critical
             .rounding
             .iter()
-            .filter(|(place, _)| place.side == side)
-            .map(|&(place, angle)| (x.at(place), plot.y.at(angle)))
-            .collect();
-        canvas.line(&line, plain(GREY, 0.9))?;
-        let _ = anchor_x;
+            .filter(|(place, _)| place.side == side);
+        here.map(|&(place, angle)| (x.at(place), plot.y.at(angle)))
+            .collect::<Vec<_>>()
+    });
+    for line in &rounding {
+        canvas.line(line, plain(GREY, 0.9))?;
     }
-    let mut labels = Vec::new();
+    let mut labels = vec![Label {
+        words: "rounding of the ray".into(),
+        colour: GREY,
+        lines: rounding.to_vec(),
+    }];
     for series in &all {
-        let mut lines = Vec::new();
-        for side in [Side::Escape, Side::Capture] {
-            let line = series.line(&plot, &x, side);
-            canvas.line(&line, series.look.pen(1.5))?;
-            for &at in &line {
+        let lines = [Side::Escape, Side::Capture].map(|side| series.line(&plot, &x, side));
+        for line in &lines {
+            canvas.line(line, series.look.pen(1.5))?;
+            for &at in line {
                 canvas.marker(series.look.marker, at, 2.8, series.look.colour)?;
             }
-            lines.push(line);
         }
-        labels.push((series, lines));
-    }
-    let labels: Vec<_> = labels
-        .into_iter()
-        .enumerate()
-        .map(|(i, (series, lines))| Label {
+        labels.push(Label {
             words: series.label.clone(),
             colour: series.look.colour,
-            line: lines.into_iter().nth(i % 2).unwrap_or_default(),
-        })
-        .collect();
-    let rounding: Vec<_> = critical
-        .rounding
-        .iter()
-        .map(|&(place, angle)| (x.at(place), plot.y.at(angle)))
-        .collect();
-    labels::place(canvas, &plot, &labels, &rounding)?;
+            lines: lines.to_vec(),
+        });
+    }
+    // Labels keep off the line in the middle.
+    let middle = (0..HEIGHT as i32 / 4).map(|k| (x.middle, bottom - 4.0 * f64::from(k)));
+    labels::place(canvas, plot.corners(), &labels, &middle.collect::<Vec<_>>())?;
     for (i, series) in failing.iter().enumerate() {
         let y = band + ROW * (i as f64 + 0.5);
         let name = words(11.0, series.look.colour);
-        canvas.text(&series.label, (left + 6.0, y), name, RIGHT_OF)?;
+        canvas.text(&series.label, (left + WIDTH - 6.0, y), name, LEFT_OF)?;
         for point in &series.points {
             if point.measurement.failures > 0 {
                 canvas.marker(
@@ -180,7 +169,7 @@ pub(super) fn draw(
         let y = band + 0.5 * ROW * failing.len() as f64;
         canvas.upward_text("failed", (left - 12.0, y), bold(11.0, BLACK))?;
     }
-    Ok(())
+    Ok(bottom + 48.0)
 }
 
 impl Series<'_> {
@@ -208,6 +197,9 @@ fn frame(canvas: &Canvas<'_>, plot: &Plot, x: &Mirrored, band: f64) -> Result<()
         for side in [Side::Escape, Side::Capture] {
             let at = x.at_decade(side, -f64::from(decade));
             canvas.line(&[(at, band), (at, bottom)], plain(LIGHT, 0.8))?;
+            if decade == 15 {
+                continue;
+            }
             canvas.text(
                 &power_of_ten(-decade),
                 (at, bottom + 5.0),
@@ -249,8 +241,8 @@ fn frame(canvas: &Canvas<'_>, plot: &Plot, x: &Mirrored, band: f64) -> Result<()
     )?;
     canvas.text(
         "critical",
-        (x.middle, bottom + 12.0),
+        (x.middle, bottom + 5.0),
         words(12.0, BLACK),
-        CENTRED,
+        BELOW,
     )
 }

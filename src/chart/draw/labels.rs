@@ -2,24 +2,23 @@
 //! machine.
 
 use super::DrawError;
-use super::axis::Plot;
 use super::canvas::{CENTRED, Canvas, Colour};
-use super::style::bold;
+use super::style::{bold, plain};
 
 /// A line's label: its words, and the points of the line that it may stand at.
 #[derive(Debug, Clone)]
 pub(super) struct Label {
     pub(super) words: String,
     pub(super) colour: Colour,
-    /// On the page, in pixels.
-    pub(super) line: Vec<(f64, f64)>,
+    /// On the page, in pixels; in pieces where it is interrupted.
+    pub(super) lines: Vec<Vec<(f64, f64)>>,
 }
 
 /// The size of the labels' letters, in pixels.
 const SIZE: f64 = 12.0;
 
 /// A rectangle on the page: left, top, right, bottom.
-type Rect = (f64, f64, f64, f64);
+pub(super) type Rect = (f64, f64, f64, f64);
 
 fn overlap(a: Rect, b: Rect) -> f64 {
     let width = a.2.min(b.2) - a.0.max(b.0);
@@ -41,49 +40,64 @@ fn beads(line: &[(f64, f64)]) -> impl Iterator<Item = (f64, f64)> + '_ {
     ends.chain(between)
 }
 
-/// Draws the labels of lines that are drawn on `plot` along `obstacles` too.
+/// Draws the labels of lines within a rectangle of the page; `obstacles` are drawn there too. A label that finds no room
+/// at its line stands apart, and a thin line leads to it.
 pub(super) fn place(
     canvas: &Canvas<'_>,
-    plot: &Plot,
+    within: Rect,
     labels: &[Label],
     obstacles: &[(f64, f64)],
 ) -> Result<(), DrawError> {
     let mut taken: Vec<Rect> = Vec::new();
     let drawn: Vec<(f64, f64)> = labels
         .iter()
-        .flat_map(|label| beads(&label.line))
+        .flat_map(|label| label.lines.iter().flat_map(|line| beads(line)))
         .chain(obstacles.iter().copied())
         .collect();
     for label in labels {
-        // Letters of a sans-serif are some six tenths as wide as high.
-        let (width, height) = (0.6 * SIZE * label.words.chars().count() as f64, 1.15 * SIZE);
-        let mut best: Option<(f64, Rect)> = None;
-        for (x, y) in beads(&label.line) {
-            for (across, up, dislike) in OFFSETS {
-                let centre = (
-                    x + across * (0.5 * width + 8.0),
-                    y - up * (0.5 * height + 6.0),
-                );
-                let rect = (
-                    centre.0 - 0.5 * width,
-                    centre.1 - 0.5 * height,
-                    centre.0 + 0.5 * width,
-                    centre.1 + 0.5 * height,
-                );
-                let cost = dislike + cost(rect, plot.corners(), &taken, &drawn);
-                if best.is_none_or(|(least, _)| cost < least) {
-                    best = Some((cost, rect));
+        // Bold letters of a sans-serif are some two thirds as wide as high.
+        let (width, height) = (
+            0.66 * SIZE * label.words.chars().count() as f64,
+            1.15 * SIZE,
+        );
+        let mut best: Option<(f64, Rect, Option<(f64, f64)>)> = None;
+        for (x, y) in label.lines.iter().flat_map(|line| beads(line)) {
+            for ring in 0..RINGS {
+                let apart = f64::from(ring) * RING;
+                for (across, up, dislike) in OFFSETS {
+                    let centre = (
+                        x + across * (0.5 * width + 8.0 + apart),
+                        y - up * (0.5 * height + 6.0 + apart),
+                    );
+                    let rect = (
+                        centre.0 - 0.5 * width,
+                        centre.1 - 0.5 * height,
+                        centre.0 + 0.5 * width,
+                        centre.1 + 0.5 * height,
+                    );
+                    let cost = dislike + 4.0 * f64::from(ring) + cost(rect, within, &taken, &drawn);
+                    if best.is_none_or(|(least, ..)| cost < least) {
+                        best = Some((cost, rect, (ring > 0).then_some((x, y))));
+                    }
                 }
             }
         }
-        if let Some((_, rect)) = best {
+        if let Some((_, rect, leader)) = best {
             taken.push(rect);
             let centre = (0.5 * (rect.0 + rect.2), 0.5 * (rect.1 + rect.3));
+            if let Some((x, y)) = leader {
+                let to = (x.clamp(rect.0, rect.2), y.clamp(rect.1, rect.3));
+                canvas.line(&[(x, y), to], plain(label.colour, 0.6))?;
+            }
             canvas.text(&label.words, centre, bold(SIZE, label.colour), CENTRED)?;
         }
     }
     Ok(())
 }
+
+/// How far from its line a label may stand: in steps of some pixels.
+const RINGS: u32 = 8;
+const RING: f64 = 12.0;
 
 /// Where a label may stand from a point: across and up, in halves of its own size, and how little that is liked.
 const OFFSETS: [(f64, f64, f64); 8] = [
@@ -97,9 +111,9 @@ const OFFSETS: [(f64, f64, f64); 8] = [
     (-1.0, -1.0, 1.5),
 ];
 
-/// How much a label covers, and whether it leaves the plot.
-fn cost(rect: Rect, plot: Rect, taken: &[Rect], drawn: &[(f64, f64)]) -> f64 {
-    let inside = overlap(rect, plot);
+/// How much a label covers, and whether it leaves its place.
+fn cost(rect: Rect, within: Rect, taken: &[Rect], drawn: &[(f64, f64)]) -> f64 {
+    let inside = overlap(rect, within);
     let area = (rect.2 - rect.0) * (rect.3 - rect.1);
     let covered = drawn
         .iter()

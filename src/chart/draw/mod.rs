@@ -16,7 +16,13 @@ use style::{BLACK, GREY, bold, words};
 
 /// The page, in pixels.
 const WIDTH: u32 = 1000;
-const HEIGHT: u32 = 1900;
+const HEIGHT: u32 = 1960;
+
+/// Where the plots begin.
+const LEFT: f64 = 72.0;
+
+/// Between two panels.
+const APART: f64 = 38.0;
 
 /// Why a figure could not be drawn.
 #[derive(Debug, thiserror::Error)]
@@ -40,8 +46,8 @@ pub fn svg(chart: &Chart) -> Result<String, DrawError> {
         canvas.text(title, (middle, 14.0), bold(21.0, BLACK), BELOW)?;
         let made = format!("darkness {} on {}", env!("CARGO_PKG_VERSION"), machine());
         canvas.text(&made, (middle, 42.0), words(12.0, GREY), BELOW)?;
-        rays::draw(canvas, &chart.rays, (72.0, 72.0))?;
-        critical::draw(canvas, &chart.critical, (72.0, 690.0))?;
-        scene::draw(canvas, &chart.frame, (72.0, 1290.0))
+        let below = rays::draw(canvas, &chart.rays, (LEFT, 72.0))?;
+        let below = critical::draw(canvas, &chart.critical, (LEFT, below + APART))?;
+        scene::draw(canvas, &chart.frame, (LEFT, below + APART))
     })
 }

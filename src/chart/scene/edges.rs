@@ -16,9 +16,6 @@ use crate::scene::{Scene, View};
 /// The orders looked at: the direct image and two rings.
 pub(super) const ORDERS: usize = 3;
 
-/// How many φ₁ are looked at.
-const PLACES: u32 = 33;
-
 /// An edge further off than this, in pixels, is lost.
 const LOST: f64 = 1e4;
 
@@ -50,14 +47,15 @@ struct Sample {
 }
 
 impl Edges {
-    pub(super) fn new(scene: &Scene, view: &View) -> Self {
+    /// At `places` φ₁.
+    pub(super) fn new(scene: &Scene, view: &View, places: u32) -> Self {
         let sight = Sight::new(scene, view, scene.tolerance());
         let (low, high) = sight.window.cotangent;
         let (from, to) = (libm::atan2(1.0, high), libm::atan2(1.0, low));
         let mut samples = Vec::new();
         for order in 0..ORDERS as u32 {
-            for place in 0..PLACES {
-                let first = from + (to - from) * (f64::from(place) + 0.5) / f64::from(PLACES);
+            for place in 0..places {
+                let first = from + (to - from) * (f64::from(place) + 0.5) / f64::from(places);
                 let angle = f64::from(order) * core::f64::consts::PI + first;
                 let [inner, outer] =
                     [Edge::Inner, Edge::Outer].map(|edge| height_at(&sight, edge, angle, &Exact));

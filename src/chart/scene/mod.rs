@@ -36,6 +36,8 @@ pub struct Frame {
     pub size: (u32, u32),
     /// What its edges may be off by, in pixels.
     pub tolerance: f64,
+    /// At how many angles each edge was looked at.
+    pub places: u32,
     /// How many pixels were compared with exact rays at most.
     pub compared: u64,
     /// Every method at every setting.
@@ -60,6 +62,11 @@ pub struct Point {
 }
 
 impl Point {
+    /// Which share of the pixels compared is wrong.
+    pub fn wrong_share(&self) -> f64 {
+        self.pixels.failures as f64 / self.pixels.count.max(1) as f64
+    }
+
     /// The largest displacement of any edge, in pixels; infinite where one is lost.
     pub fn displacement(&self) -> f64 {
         self.orders.iter().fold(0.0, |most: f64, order| {
@@ -80,6 +87,8 @@ struct Bounds {
     sampled_pixels: u32,
     /// Pixels to know the truth of, at most.
     compared_pixels: u64,
+    /// At how many φ₁ each edge is looked at.
+    places: u32,
     /// Seconds of one thread for counting the wrong pixels of one setting.
     seconds: f64,
 }
@@ -92,6 +101,7 @@ impl Bounds {
                 time: Duration::from_secs(3),
                 sampled_pixels: 1024,
                 compared_pixels: 1 << 17,
+                places: 129,
                 seconds: 0.15,
             },
             Effort::Full => Self {
@@ -99,6 +109,7 @@ impl Bounds {
                 time: Duration::from_secs(40),
                 sampled_pixels: 8192,
                 compared_pixels: 1 << 22,
+                places: 129,
                 seconds: 3.0,
             },
         }
@@ -164,7 +175,7 @@ impl Frame {
         let times = one_thread.install(|| time(scene, &view, &entries, &bounds, progress));
         let truth = Truth::new(scene, &view, bounds.compared_pixels)?;
         progress(0.6);
-        let edges = Edges::new(scene, &view);
+        let edges = Edges::new(scene, &view, bounds.places);
         let mut points = Vec::with_capacity(entries.len());
         for (i, (entry, time)) in entries.iter().zip(times).enumerate() {
             let budget = (bounds.seconds * 1e9 / time.nanoseconds.max(1e-3)) as u64;
@@ -175,6 +186,7 @@ impl Frame {
             name,
             size: (view.width(), view.height()),
             tolerance: scene.tolerance(),
+            places: bounds.places,
             compared: truth.pixels(),
             points,
         })
