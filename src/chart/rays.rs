@@ -51,7 +51,7 @@ impl Rays {
     /// Measures; `progress` is told which share is done.
     pub fn measure(tables: &Tables, effort: Effort, progress: &dyn Fn(f64)) -> Self {
         let (count, repetitions) = match effort {
-            Effort::Quick => (1024, 5),
+            Effort::Quick => (1024, 11),
             Effort::Full => (4096, 15),
         };
         let questions = questions(count);

@@ -16,7 +16,7 @@ const WRONG_HEIGHT: f64 = 150.0;
 const APART: f64 = 14.0;
 
 /// Height of the strips for what no logarithm has: lost edges above, no wrong pixel below.
-const STRIP: f64 = 22.0;
+const STRIP: f64 = 26.0;
 
 /// Of a plot's width, what curves have; the methods that step every pixel have the rest.
 const CURVES: f64 = 0.56;
@@ -80,8 +80,10 @@ impl Pair {
             .fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), time| {
                 (low.min(time), high.max(time))
             });
+        // To the right there is room for labels.
+        let (low, high) = (libm::log10(0.97 * low), libm::log10(1.03 * high));
         let curves = Axis {
-            decades: (libm::log10(0.96 * low), libm::log10(1.04 * high)),
+            decades: (low, high + 0.25 * (high - low)),
             pixels: (left, border),
         };
         let steps = Axis::about(times(false), (border + GAP, right));
@@ -259,7 +261,7 @@ fn wrong_pixels(
 ) -> Result<(), DrawError> {
     let (left, top, right, bottom) = pair.corners();
     pair.frame(canvas, (top, bottom + STRIP), true)?;
-    let none = bottom + 0.5 * STRIP;
+    let none = bottom + 0.6 * STRIP;
     canvas.text("none", (left - 6.0, none), words(12.0, BLACK), LEFT_OF)?;
     let labels = pair.lines(canvas, all, |point| {
         let share = point.wrong_share();
