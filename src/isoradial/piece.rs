@@ -21,19 +21,19 @@ pub(super) struct Piece {
 
 impl Piece {
     /// The piece between two curves drawn over the same x, on as many nodes as the finer one has.
-    pub(super) fn new(inner: Nodes, outer: Nodes) -> Self {
+    pub(super) fn new(inner: &Nodes, outer: &Nodes) -> Self {
         let count = inner.count().max(outer.count());
-        let (inner, outer) = (inner.with_count(count), outer.with_count(count));
+        let finer = if inner.count() == count { inner } else { outer };
         let mut piece = Self {
-            axis: Scale::new(inner.axis()),
-            pole: inner.quarter.pole,
-            inner: inner.coefficients(),
-            outer: outer.coefficients(),
+            axis: Scale::new(finer.axis()),
+            pole: finer.quarter.pole,
+            inner: inner.spline(count),
+            outer: outer.spline(count),
             lowest: f64::INFINITY,
             highest: f64::NEG_INFINITY,
         };
         for cell in 1..count {
-            let x = (inner.x(cell - 1), inner.x(cell));
+            let x = (finer.x(cell - 1), finer.x(cell));
             piece.lowest = piece.lowest.min(piece.bounds(&piece.outer, x).0);
             piece.highest = piece.highest.max(piece.bounds(&piece.inner, x).1);
         }

@@ -63,7 +63,7 @@ impl Orbit {
         };
         Self {
             start: Point { u, slope },
-            inward: w > 0.0,
+            inward: w > 0.0 || (slope == 0.0 && family == Family::Trapped),
             e2: slope * slope + u * u * (1.0 - u),
             delta,
             family,

@@ -76,8 +76,7 @@ fn turns(orbit: &Orbit) -> bool {
     match orbit.family {
         Family::Monotone => false,
         Family::Scattered => orbit.inward,
-        // At an apoapsis (slope 0) the ray is already on its way in.
-        Family::Trapped => !orbit.inward && orbit.start.slope > 0.0,
+        Family::Trapped => !orbit.inward,
     }
 }
 
