@@ -1,12 +1,12 @@
 //! The second panel: how wrong a ray's whole flight is, the closer the ray is to the critical one.
 //!
 //! The critical ray winds round the photon sphere for ever; a ray beside it winds for about ln(1/distance), where
-//! `distance = |27e²/4 − 1|`, and then escapes or falls in. Errors made on the way grow as e^φ meanwhile, so that this is
-//! where methods fail: by the angle, and in the end by the ray's fate.
+//! `distance = |27e²/4 − 1|`, and then escapes or falls in. Errors made on the way grow as e^φ meanwhile, so that
+//! this is where methods fail: by the angle, and in the end by the ray's fate.
 //!
-//! At each half decade of the distance, on both sides, rays that go towards the photon sphere start at several radii. A
-//! double cannot say every slope: of its neighbours the one is taken that comes closest, and the distance that it has is
-//! what is reported.
+//! At each half decade of the distance, on both sides, rays that go towards the photon sphere start at several radii.
+//! A double cannot say every slope: of its neighbours the one is taken that comes closest, and the distance that it
+//! has is what is reported.
 //!
 //! # What rounding the ray does
 //! A ray's slope is a double, good to ε/2. The grey line is `ε |∂angle/∂ln dudphi|`, the largest among the rays: what

@@ -22,8 +22,8 @@ pub struct Times {
 
 /// Runs the contenders in turn, `rounds` times over, on this thread; `round_done` is called after each round.
 ///
-/// A run shorter than `least` is repeated until it takes as long, within its turn, so that what a contender finds in the
-/// caches is its own. No round but the first is begun after `most`.
+/// A run shorter than `least` is repeated until it takes as long, within its turn, so that what a contender finds in
+/// the caches is its own. No round but the first is begun after `most`.
 pub fn rounds(
     contenders: &mut [Contender<'_>],
     rounds: usize,

@@ -1,9 +1,10 @@
 //! The first panel: what one swept angle costs, and how wrong it is.
 //!
-//! The rays are those of cameras everywhere. Camera radii are spread evenly in log r over 1.05 … 1000, directions over the
-//! sphere, disk radii in log r over 3 … 30, by an additive sequence that fills the cube evenly and is the same on every
-//! machine; of these the rays that cross their disk radius are kept. The question is the angle swept until they first do.
-//! Every method answers it for the same rays and is charged for no more: the integrators stop there.
+//! The rays are those of cameras everywhere. Camera radii are spread evenly in log r over 1.05 … 1000, directions
+//! over the sphere, disk radii in log r over 3 … 30, by an additive sequence that fills the cube evenly and is the
+//! same on every machine; of these the rays that cross their disk radius are kept. The question is the angle swept
+//! until they first do. Every method answers it for the same rays and is charged for no more: the integrators stop
+//! there.
 //!
 //! # The exact method's own error
 //! The others are wrong by their difference from the exact method. Its own point shows how far it is from itself: the
@@ -129,8 +130,8 @@ fn contestants(tables: &Tables, effort: Effort, baseline_step: f64) -> Vec<Conte
     all
 }
 
-/// `count` rays that cross their radius: those of the sequence of powers of 1/g, g⁴ = g + 1, which fills the cube evenly
-/// (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
+/// `count` rays that cross their radius: those of the sequence of powers of 1/g, g⁴ = g + 1, which fills the cube
+/// evenly (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
 fn questions(count: usize) -> Vec<Question> {
     const STEPS: [f64; 3] = [
         0.819_172_513_396_164_4,

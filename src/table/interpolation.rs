@@ -40,7 +40,8 @@ pub struct Grid<K> {
 }
 
 impl<K: Interpolation> Grid<K> {
-    /// The charts on the nodes of `spec`, and what error their angles have; `None` where it asks for a grid that no table can have.
+    /// The charts on the nodes of `spec`, and what error their angles have; `None` where it asks for a grid that no
+    /// table can have.
     pub fn new(spec: &Spec, kernel: K) -> Option<Self> {
         spec.is_sound().then(|| {
             let numbers = numbers::<K>(spec, &|| ());

@@ -26,7 +26,10 @@ fn overlap(a: Rect, b: Rect) -> f64 {
     width.max(0.0) * height.max(0.0)
 }
 
-/// The boxes about a line, some pixels apart.
+/// A place for a label: what speaks against it, its rectangle, and the point that a line leads from.
+type Place = (f64, Rect, Option<(f64, f64)>);
+
+/// Points along a line, some pixels apart.
 fn beads(line: &[(f64, f64)]) -> impl Iterator<Item = (f64, f64)> + '_ {
     let ends = line.iter().copied();
     let between = line.windows(2).flat_map(|pair| {
@@ -40,8 +43,8 @@ fn beads(line: &[(f64, f64)]) -> impl Iterator<Item = (f64, f64)> + '_ {
     ends.chain(between)
 }
 
-/// Draws the labels of lines within a rectangle of the page; `obstacles` are drawn there too. A label that finds no room
-/// at its line stands apart, and a thin line leads to it.
+/// Draws the labels of lines within a rectangle of the page; `obstacles` are drawn there too. A label that finds no
+/// room at its line stands apart, and a thin line leads to it.
 pub(super) fn place(
     canvas: &Canvas<'_>,
     within: Rect,
@@ -60,7 +63,7 @@ pub(super) fn place(
             0.66 * SIZE * label.words.chars().count() as f64,
             1.15 * SIZE,
         );
-        let mut best: Option<(f64, Rect, Option<(f64, f64)>)> = None;
+        let mut best: Option<Place> = None;
         for (x, y) in label.lines.iter().flat_map(|line| beads(line)) {
             for ring in 0..RINGS {
                 let apart = f64::from(ring) * RING;

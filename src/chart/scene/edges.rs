@@ -1,10 +1,10 @@
 //! Where a method puts the disk's edges, in pixels from where the exact method puts them.
 //!
-//! At angles φ₁ spread evenly over those that the picture shows, for each edge and order, the exact ray that just meets
-//! the edge is found; those outside the picture are left out. Curves tell their own; of a method that steps rays the
-//! ray is sought at which its answer flips: that it is closer to the hole than the edge when it meets the disk's plane,
-//! or that it is not. An order that curves leave out for its thinness is one whose two edges are drawn on each other: they
-//! count as displaced by its thickness.
+//! At angles φ₁ spread evenly over those that the picture shows, for each edge and order, the exact ray that just
+//! meets the edge is found; those outside the picture are left out. Curves tell their own; of a method that steps
+//! rays the ray is sought at which its answer flips: that it is closer to the hole than the edge when it meets the
+//! disk's plane, or that it is not. An order that curves leave out for its thinness is one whose two edges are drawn
+//! on each other: they count as displaced by its thickness.
 
 use rayon::prelude::*;
 

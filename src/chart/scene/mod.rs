@@ -1,31 +1,26 @@
 //! The third panel: what a scene's frame costs, and how right it is.
 //!
-//! Tables, grids and the exact method draw isoradial curves, to several tolerances, and fill the frame between them; the
-//! integrators step every pixel's ray. Asked of both: where each edge of the disk is, order by order, in pixels from
-//! where it should be ([`edges`]), and how many pixels are wrong ([`frames`]). Times are of whole frames on one thread:
-//! curves and frame together, or the time of an even sample of pixels for those that step each.
+//! Tables, grids and the exact method draw isoradial curves, to several tolerances, and fill the frame between them;
+//! the integrators step every pixel's ray. Asked of both: where each edge of the disk is, order by order, in pixels
+//! from where it should be (`edges.rs`), and how many pixels are wrong (`frames.rs`). Times are of whole frames on
+//! one thread: curves and frame together, or the time of an even sample of pixels for those that step each.
 
 mod edges;
 mod frames;
+mod ways;
+mod words;
 
 use core::time::Duration;
 
 use super::interleaved::{Contender, rounds};
-use super::methods::{Method, Stepper, Tables};
+use super::methods::{Method, Tables};
 use super::{ChartError, Effort, Measurement, Panel, Quantiles, Time};
-use crate::isoradial::{Isoradials, Sight};
-use crate::orbit::exact::Exact;
-use crate::orbit::path::SweptAngles;
 use crate::render::mask;
 use crate::scene::{self, View};
 use edges::{Displacements, Edges, ORDERS};
 use frames::Truth;
-
-/// What the curves are asked for, in pixels, beside the scene's own tolerance.
-const TOLERANCES: [f64; 5] = [1.0, 0.1, 0.01, 1e-3, 1e-4];
-
-/// Pictures with more pixels than this are drawn with their own tolerance only.
-const MANY_PIXELS: u64 = 1 << 25;
+use ways::{Entry, Way, entries, sources};
+use words::{grouped, two_digits};
 
 /// What is measured of a scene's frame.
 #[derive(Debug)]
@@ -116,41 +111,6 @@ impl Bounds {
     }
 }
 
-/// A way to draw the frame, with its knob set.
-enum Way<'a> {
-    Curves {
-        angles: &'a dyn Curves,
-        sight: Sight,
-    },
-    Steps(Stepper),
-}
-
-/// A method's swept angles, to draw curves from.
-trait Curves: Sync {
-    fn draw(&self, sight: &Sight) -> Isoradials;
-}
-
-impl<T: SweptAngles> Curves for T {
-    fn draw(&self, sight: &Sight) -> Isoradials {
-        Isoradials::new(sight, self)
-    }
-}
-
-/// What draws curves: the method, its words for the CSV, the bytes of its table.
-struct Source<'a> {
-    method: Method,
-    table_bytes: Option<usize>,
-    angles: Box<dyn Curves + Send + 'a>,
-}
-
-/// A setting to be measured.
-struct Entry<'a> {
-    method: Method,
-    way: Way<'a>,
-    setting: String,
-    table_bytes: Option<usize>,
-}
-
 impl Frame {
     /// Measures the frame of `scene`; `progress` is told which share is done. `baseline_step` is RK4's for the ratios.
     ///
@@ -228,141 +188,6 @@ impl Frame {
     }
 }
 
-/// A count with its thousands set apart.
-fn grouped(count: usize) -> String {
-    let digits = count.to_string();
-    let mut grouped = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i) % 3 == 0 {
-            grouped.push(',');
-        }
-        grouped.push(digit);
-    }
-    grouped
-}
-
-/// A number below 1 to two digits, rounded up: what nothing is above.
-fn two_digits(value: f64) -> String {
-    if value <= 0.0 {
-        return "0".into();
-    }
-    let digits = 1 - libm::floor(libm::log10(value)) as i32;
-    let scale = libm::pow(10.0, f64::from(digits));
-    let rounded = (value * scale).ceil() / scale;
-    if digits > 6 {
-        format!("{rounded:.1e}")
-    } else {
-        format!("{rounded:.*}", digits.max(0) as usize)
-    }
-}
-
-/// All that draws curves.
-fn sources(tables: &Tables) -> Vec<Source<'_>> {
-    let mut all: Vec<Source<'_>> = Vec::new();
-    for (method, table) in tables.tables() {
-        all.push(Source {
-            method: *method,
-            table_bytes: Some(table.bytes().len()),
-            angles: Box::new(table.lookup()),
-        });
-    }
-    if let Some((nearest, linear, cubic)) = tables.standard_grid() {
-        let source = |method, bytes, angles| Source {
-            method,
-            table_bytes: Some(bytes),
-            angles,
-        };
-        all.push(source(
-            Method::Nearest,
-            nearest.bytes(),
-            Box::new(nearest.lookup()),
-        ));
-        all.push(source(
-            Method::Linear,
-            linear.bytes(),
-            Box::new(linear.lookup()),
-        ));
-        all.push(source(
-            Method::Cubic,
-            cubic.bytes(),
-            Box::new(cubic.lookup()),
-        ));
-    }
-    all.push(Source {
-        method: Method::Exact,
-        table_bytes: None,
-        angles: Box::new(Exact),
-    });
-    all
-}
-
-/// Every method at every setting; first the baseline.
-fn entries<'a>(
-    scene: &scene::Scene,
-    view: &View,
-    sources: &'a [Source<'_>],
-    baseline_step: f64,
-    effort: Effort,
-) -> Vec<Entry<'a>> {
-    let mut steppers = vec![Stepper::rk4(baseline_step)];
-    steppers.extend(match effort {
-        Effort::Quick => vec![
-            Stepper::euler(0.01),
-            Stepper::euler(1e-3),
-            Stepper::rk4(0.2),
-            Stepper::rk4(0.02),
-            Stepper::adaptive(1e-3),
-            Stepper::adaptive(1e-9),
-        ],
-        Effort::Full => vec![
-            Stepper::euler(0.1),
-            Stepper::euler(0.03),
-            Stepper::euler(0.01),
-            Stepper::euler(3e-3),
-            Stepper::euler(1e-3),
-            Stepper::rk4(0.3),
-            Stepper::rk4(0.2),
-            Stepper::rk4(0.1),
-            Stepper::rk4(0.02),
-            Stepper::rk4(0.01),
-            Stepper::rk4(5e-3),
-            Stepper::adaptive(1e-3),
-            Stepper::adaptive(1e-6),
-            Stepper::adaptive(1e-9),
-            Stepper::adaptive(1e-12),
-        ],
-    });
-    let mut all: Vec<_> = steppers
-        .into_iter()
-        .map(|stepper| Entry {
-            method: stepper.method(),
-            setting: stepper.setting(),
-            way: Way::Steps(stepper),
-            table_bytes: None,
-        })
-        .collect();
-    let mut tolerances = vec![scene.tolerance()];
-    if u64::from(view.width()) * u64::from(view.height()) <= MANY_PIXELS {
-        tolerances.extend(TOLERANCES);
-    }
-    tolerances.sort_by(|a, b| b.total_cmp(a));
-    tolerances.dedup();
-    for source in sources {
-        for &tolerance in &tolerances {
-            all.push(Entry {
-                method: source.method,
-                way: Way::Curves {
-                    angles: &*source.angles,
-                    sight: Sight::new(scene, view, tolerance),
-                },
-                setting: format!("curve-tolerance={tolerance:e}"),
-                table_bytes: source.table_bytes,
-            });
-        }
-    }
-    all
-}
-
 /// Times every entry: nanoseconds a pixel, and the ratio to the first.
 fn time(
     scene: &scene::Scene,
@@ -430,10 +255,15 @@ fn point(
         Way::Curves { angles, sight } => {
             let curves = angles.draw(sight);
             nodes = Some(curves.nodes());
-            setting += &format!(" nodes={} bytes={}", curves.nodes(), curves.bytes());
-            if let Some(bytes) = entry.table_bytes {
-                setting += &format!(" table-bytes={bytes}");
-            }
+            let words = format!("nodes={} bytes={}", curves.nodes(), curves.bytes());
+            let table = entry
+                .table_bytes
+                .map(|bytes| format!("table-bytes={bytes}"));
+            setting = [Some(setting), Some(words), table]
+                .into_iter()
+                .flatten()
+                .collect::<Vec<_>>()
+                .join(" ");
             let frame = mask::render(view, &curves)?;
             (edges.of_curves(&curves), truth.wrong_in(&frame, view))
         }
@@ -465,20 +295,4 @@ fn point(
             row(format!("order={order}"), Quantiles::of(pixels), lost, count)
         }),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn counts_and_bounds_are_written_for_readers() {
-        assert_eq!(grouped(14640), "14,640");
-        assert_eq!(grouped(212), "212");
-        assert_eq!(grouped(1_000_000), "1,000,000");
-        assert_eq!(two_digits(6.31e-4), "0.00064");
-        assert_eq!(two_digits(0.5), "0.50");
-        assert_eq!(two_digits(0.0), "0");
-        assert_eq!(two_digits(3.21e-9), "3.3e-9");
-    }
 }
