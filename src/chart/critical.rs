@@ -248,8 +248,8 @@ mod tests {
         let at = |distance| Rays::new(Side::Capture, distance).unwrap().rounding();
         let ratio = at(1e-10) / at(1e-8);
         assert!((ratio - 100.0).abs() < 1.0, "{ratio}");
-        // d angle = A dΔ/2Δ, A near 1, twice from a start far away: w² ≈ 4/27 there.
-        let expected = f64::EPSILON * 1e8;
+        // A captured ray's angle is −ln Δ beside what is smooth, and `dΔ = 2 w² d ln w` with w² near 4/27 far out.
+        let expected = 2.0 * f64::EPSILON * 1e8;
         assert!((at(1e-8) / expected - 1.0).abs() < 0.1, "{:e}", at(1e-8));
     }
 }

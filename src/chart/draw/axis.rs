@@ -196,7 +196,7 @@ impl Plot {
 }
 
 /// Letters of a caption's line: no wider than the page in any usual font.
-const LINE: usize = 146;
+const LINE: usize = 156;
 
 /// A panel's title, and below it what it shows. Returns where that ends.
 pub(super) fn heading(

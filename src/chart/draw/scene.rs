@@ -12,6 +12,9 @@ const WIDTH: f64 = 890.0;
 const HEIGHT: f64 = 290.0;
 const WRONG_HEIGHT: f64 = 150.0;
 
+/// The orders that are drawn.
+const TITLES: [&str; 3] = ["direct image", "first ring", "second ring"];
+
 /// Between the three plots.
 const APART: f64 = 14.0;
 
@@ -49,10 +52,7 @@ fn series(frame: &Frame) -> Vec<Series<'_>> {
             let look = Look::of(method);
             Series {
                 look,
-                label: match method {
-                    Method::TableStandard => "standard = cubic",
-                    _ => look.short,
-                },
+                label: look.short,
                 points,
             }
         })
@@ -125,7 +125,10 @@ impl Pair {
         let mut steps = self.steps.x.ticks(30.0);
         // At the common border there is no room for two.
         steps.retain(|tick| tick.at > self.steps.x.pixels.0 + 12.0);
-        let ticks = [self.curves.x.even_ticks(4.0), steps];
+        let (left, right) = self.curves.x.pixels;
+        let mut curves = self.curves.x.even_ticks(4.0);
+        curves.retain(|tick| left + 10.0 < tick.at && tick.at < right - 8.0);
+        let ticks = [curves, steps];
         for ((plot, ticks), labels) in [self.curves, self.steps]
             .into_iter()
             .zip(ticks)
@@ -179,20 +182,20 @@ pub(super) fn draw(canvas: &Canvas<'_>, frame: &Frame, at: (f64, f64)) -> Result
     let (left, top) = at;
     let (width, height) = frame.size;
     let caption = format!(
-        "{} at {width} × {height}, edges asked to be right to {:?} pixels. Tables, grids (of the standard table's size) and exact draw isoradial curves, to several tolerances, and fill the frame between them (left of each plot); Euler, RK4 and adaptive step every pixel's ray (right; timed on an even sample of pixels). Upper plots: the largest displacement of an edge at {} angles. A cross at the top: an edge was lost.",
+        "{} at {width} × {height}, edges asked to be right to {:?} pixels. Tables, grids (of the standard table's size; the cubic one is that table) and exact draw isoradial curves, to several tolerances, and fill the frame between them (left of each plot); Euler, RK4 and adaptive step every pixel's ray (right; timed on an even sample of pixels). Upper plots: the largest displacement of an edge at {} angles. A cross at the top: an edge was lost.",
         frame.name, frame.tolerance, frame.places
     );
     let title = "Scene: what a frame costs, and how far its edges are off";
     let top = heading(canvas, (left - 56.0, top), title, &caption)? + 24.0;
     let all = series(frame);
     let each = (WIDTH - 2.0 * APART) / 3.0;
-    let errors = frame.points.iter().flat_map(|point| &point.orders);
+    let errors = frame
+        .points
+        .iter()
+        .flat_map(|point| &point.orders[..TITLES.len()]);
     let errors = errors.filter_map(|order| order.error.map(|error| error.max.max(1e-13)));
     let y = Axis::about(errors, (top + HEIGHT, top + STRIP));
-    for (order, title) in ["direct image", "first ring", "second ring"]
-        .into_iter()
-        .enumerate()
-    {
+    for (order, title) in TITLES.into_iter().enumerate() {
         let from = left + order as f64 * (each + APART);
         let pair = Pair::new(frame, (from, from + each), y);
         displacements(canvas, &pair, &all, order, frame.tolerance)?;
@@ -246,10 +249,10 @@ fn displacements(
         let error = point.orders.get(order)?.error?;
         Some(pair.curves.y.at(error.max))
     })?;
-    let line = (left as i32..right as i32)
-        .step_by(4)
-        .map(|x| (f64::from(x), asked));
-    labels::place(canvas, pair.corners(), &labels, &line.collect::<Vec<_>>())
+    let mut taken = pair.border();
+    let line = (left as i32..right as i32).step_by(4);
+    taken.extend(line.map(|x| (f64::from(x), asked)));
+    labels::place(canvas, pair.corners(), &labels, &taken)
 }
 
 /// The plot of wrong pixels, as a share of those compared.

@@ -13,8 +13,12 @@ use crate::orbit::exact::Exact;
 use crate::orbit::{EventKind, Fate, Orbits, Ray};
 use crate::scene::{Scene, View};
 
-/// The orders looked at: the direct image and two rings.
-pub(super) const ORDERS: usize = 3;
+/// The orders looked at: the direct image, two rings, and further ones where the picture needs them, which are
+/// those thicker than its tolerance.
+pub(super) const ORDERS: usize = 6;
+
+/// The orders that are looked at anyway.
+const ALWAYS: u32 = 3;
 
 /// An edge further off than this, in pixels, is lost.
 const LOST: f64 = 1e4;
@@ -60,6 +64,9 @@ impl Edges {
                 let [inner, outer] =
                     [Edge::Inner, Edge::Outer].map(|edge| height_at(&sight, edge, angle, &Exact));
                 let thickness = sight.pixels((outer, inner));
+                if order >= ALWAYS && thickness < sight.tolerance {
+                    continue;
+                }
                 for (edge, height) in [(Edge::Inner, inner), (Edge::Outer, outer)] {
                     let kappa = sight.critical() + height;
                     if sight.window.kappa.0 <= kappa && kappa <= sight.window.kappa.1 {

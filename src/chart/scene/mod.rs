@@ -92,7 +92,7 @@ impl Bounds {
     fn of(effort: Effort) -> Self {
         match effort {
             Effort::Quick => Self {
-                repetitions: 3,
+                repetitions: 5,
                 time: Duration::from_secs(3),
                 sampled_pixels: 1024,
                 compared_pixels: 1 << 17,
@@ -100,7 +100,7 @@ impl Bounds {
                 seconds: 0.15,
             },
             Effort::Full => Self {
-                repetitions: 7,
+                repetitions: 21,
                 time: Duration::from_secs(40),
                 sampled_pixels: 8192,
                 compared_pixels: 1 << 22,
@@ -169,6 +169,10 @@ impl Frame {
     /// What is enough for this scene, as measured, in one sentence.
     pub fn summary(&self) -> String {
         let (name, asked) = (&self.name, self.tolerance);
+        let mut orders = self.points.iter().flat_map(|point| &point.orders);
+        if orders.all(|order| order.count == 0) {
+            return format!("{name}: no edge of the disk is in the picture; no table is needed");
+        }
         let Some(point) = self.least() else {
             return format!(
                 "{name}: with no table are all edges right to the {asked:?} pixels asked for; exact angles are needed"
