@@ -17,9 +17,8 @@ use core::f64::consts::PI;
 
 use darkness::orbit::exact::Exact;
 use darkness::orbit::{Event, EventKind, Fate, Orbits, Ray};
-use darkness::render::mask;
-use darkness::scene::{Scene, View};
-use frames::{Curves, sees_disk, sees_disk_by};
+use darkness::scene::{DEFAULT_TOLERANCE, Scene, View};
+use frames::{SeenByCurves, sees_disk, sees_disk_by};
 use glam::DVec3;
 use quadrature::TrueRay;
 use tables::table;
@@ -249,7 +248,7 @@ fn rings_zoomed_in_on_are_where_exact_rays_see_them() {
             let line = Line::new(place, order);
             let (scene, view) = (&line.scene, &line.view);
             let curves = ["draft", "standard", "fine"]
-                .map(|name| (name, Curves::new(scene, &table(name).lookup())));
+                .map(|name| (name, SeenByCurves::new(scene, &table(name).lookup())));
             // Away from the hole and towards it: the picture's top is on the far side of the ring.
             for (black, radius) in [(-0.6, EDGES[1]), (0.6, EDGES[0])] {
                 let black = MIDDLE + black * THICKNESS;
@@ -261,7 +260,7 @@ fn rings_zoomed_in_on_are_where_exact_rays_see_them() {
                 let mut check = |name: &str, found: f64| {
                     let off = (found - known).abs();
                     assert!(
-                        off <= mask::TOLERANCE,
+                        off <= DEFAULT_TOLERANCE,
                         "{}, r = {radius}, {name}: {off} pixels off",
                         line.name()
                     );

@@ -6,9 +6,8 @@ mod frames;
 #[path = "common/tables.rs"]
 mod tables;
 
-use darkness::render::mask::TOLERANCE;
-use darkness::scene::{Scene, View};
-use frames::{Curves, sees_disk};
+use darkness::scene::{DEFAULT_TOLERANCE, Scene, View};
+use frames::{SeenByCurves, sees_disk};
 use glam::DVec3;
 use tables::table;
 
@@ -80,7 +79,7 @@ fn curves_that_reach_a_view_are_right_to_a_thousandth_of_a_pixel() {
                 // The hole is as large in the picture from afar.
                 let scene = scene(position, focus, fov * (30.0 / position.length()).min(1.0));
                 let view = View::new(&scene);
-                let curves = Curves::new(&scene, &table(name).lookup());
+                let curves = SeenByCurves::new(&scene, &table(name).lookup());
                 if !curves.reach() {
                     // The table's own error, on the curve that moves most.
                     assert!(
@@ -107,7 +106,7 @@ fn curves_that_reach_a_view_are_right_to_a_thousandth_of_a_pixel() {
                 }
                 if apart.is_finite() {
                     assert!(
-                        apart <= TOLERANCE,
+                        apart <= DEFAULT_TOLERANCE,
                         "{name}, {focus} from {position}, {fov}°: {apart} pixels apart"
                     );
                     worst = worst.max(apart);

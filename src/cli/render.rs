@@ -140,12 +140,19 @@ fn by_curves(
             "the isoradial curves of this view are only right to {:.1e} pixels, so every pixel's ray is followed by itself, which takes a hundred times as long",
             error.total()
         ));
+        warn_of(error.angles + error.rounding, error, needs, report);
         return ray_by_ray(scene, view, angles, report);
     }
-    if error.total() > allowed {
+    warn_of(error.total(), error, needs, report);
+    mask::render(view, &curves)
+}
+
+/// Says what an edge may be off by where that is more than was asked for, and what would help.
+fn warn_of(off: f64, error: EdgeError, needs: &Needs, report: Report) {
+    let allowed = needs.sight.tolerance;
+    if off > allowed {
         report.note(format_args!(
-            "an edge of this picture may be off by {:.1e} pixels, more than the {allowed:?} asked for: {}",
-            error.total(),
+            "an edge of this picture may be off by {off:.1e} pixels, more than the {allowed:?} asked for: {}",
             if error.angles > error.rounding {
                 needs.advice()
             } else {
@@ -153,7 +160,6 @@ fn by_curves(
             }
         ));
     }
-    mask::render(view, &curves)
 }
 
 /// Whether the curves fall short of what their angles and the arithmetic allow: where a disk of any width and a lens

@@ -149,9 +149,9 @@ fn distance_from_critical(u: f64, slope: f64) -> f64 {
     if slope.is_infinite() {
         return f64::INFINITY;
     }
-    // s carries at most 3 roundings; 16 ε leaves the plain form at least two digits of the difference's sign, and its
-    // error below the 16 ε·condition of the ray itself.
-    if difference.abs() > 16.0 * f64::EPSILON * s {
+    // s carries at most 3 roundings: of a thousandth of it they are 1e3 as much, and angles, which go as ln |Δ|, are
+    // right to some 1e-13 whatever their condition.
+    if difference.abs() > 1e-3 * s {
         return difference * (slope + s);
     }
     let x = if u >= 0.5 {

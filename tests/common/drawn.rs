@@ -1,4 +1,4 @@
-//! Frames as a user gets them: drawn by the program itself, which looks up each pixel by itself where it finds that
+//! Frames as a user gets them: drawn by the program itself, which follows each pixel's ray by itself where it finds that
 //! its curves do not reach a view.
 
 use std::fs;
@@ -51,7 +51,7 @@ impl Program {
         let pixels = image::open(&picture).unwrap().to_luma8().into_raw();
         Drawn {
             pixels,
-            by_curves: !said.contains("looked up by itself"),
+            by_curves: !said.contains("followed by itself"),
         }
     }
 }

@@ -71,21 +71,27 @@ pub(crate) fn sees_disk_by(
 }
 
 /// What the curves of a scene see at any point of its picture.
-pub(crate) struct Curves {
+pub(crate) struct SeenByCurves {
     view: View,
     curves: Isoradials,
+    tolerance: f64,
 }
 
-impl Curves {
+impl SeenByCurves {
     pub(crate) fn new(scene: &Scene, angles: &impl SweptAngles) -> Self {
         let view = View::new(scene);
-        let curves = Isoradials::new(&mask::sight(scene, &view), angles);
-        Self { view, curves }
+        let sight = Sight::new(scene, &view, scene.tolerance());
+        let curves = Isoradials::new(&sight, angles);
+        Self {
+            view,
+            curves,
+            tolerance: scene.tolerance(),
+        }
     }
 
     /// Whether they are as right as frames from curves must be.
     pub(crate) fn reach(&self) -> bool {
-        self.curves.error() <= mask::TOLERANCE
+        self.curves.error().total() <= self.tolerance
     }
 
     /// Whether the disk is seen at a point given in pixels from the picture's top left corner.
@@ -94,9 +100,7 @@ impl Curves {
             .view
             .ray_at(self.view.x_at(column), self.view.y_at(row));
         let s = ray.transverse();
-        // Of the disk's two normals the one away from the camera.
-        let sign = if self.view.n_p() > 0.0 { -1.0 } else { 1.0 };
-        let (n, d) = (self.view.n_p().abs() * s, sign * self.view.n_a() * ray.ta);
+        let (n, d) = (self.view.n_p().abs() * s, self.view.plane_slope() * ray.ta);
         s > 0.0 && self.curves.meets(ray.z, s, n, d)
     }
 }
@@ -112,30 +116,9 @@ fn is_on_an_edge(scene: &Scene, view: &View, i: usize, j: usize) -> bool {
     answers.contains(&true) && answers.contains(&false)
 }
 
-/// Whether, at the centre of pixel (i, j), an edge of the disk is crossed within an angle `slack` of the disk's plane:
-/// a method whose angles are that far off may see either.
-fn is_within_an_angle(scene: &Scene, view: &View, (i, j): (usize, usize), slack: f64) -> bool {
-    let ray = view.pixel(i as u32, j as u32);
-    let s = ray.transverse();
-    let start = Ray::new(view.u0(), view.dudphi(ray)).unwrap();
-    let events = Exact
-        .follow(start, &[scene.disk().inner, scene.disk().outer])
-        .unwrap();
-    let first = view.plane_crossing(ray.ta, s);
-    events.iter().any(|event| {
-        let turns = (event.angle - first) / PI;
-        !matches!(event.kind, EventKind::End(_)) && (turns - turns.round()).abs() * PI <= slack
-    })
-}
-
 /// How many pixels of two frames of `scene` differ; every one of them must lie on an edge, within a thousandth of a
 /// pixel, which is what the curves promise ([`darkness::scene::DEFAULT_TOLERANCE`]).
 pub(crate) fn differing(name: &str, scene: &Scene, a: &[u8], b: &[u8]) -> usize {
-    differing_by(name, scene, a, b, 0.0)
-}
-
-/// The same, of a frame by a method whose angles may be off by `slack`: also where that decides.
-pub(crate) fn differing_by(name: &str, scene: &Scene, a: &[u8], b: &[u8], slack: f64) -> usize {
     let view = View::new(scene);
     let width = view.width() as usize;
     assert_eq!(a.len(), width * view.height() as usize, "{name}");
@@ -146,10 +129,7 @@ pub(crate) fn differing_by(name: &str, scene: &Scene, a: &[u8], b: &[u8], slack:
         .collect();
     let wrong: Vec<_> = differing
         .iter()
-        .filter(|&&(i, j)| {
-            let excused = slack > 0.0 && is_within_an_angle(scene, &view, (i, j), slack);
-            !excused && !is_on_an_edge(scene, &view, i, j)
-        })
+        .filter(|&&(i, j)| !is_on_an_edge(scene, &view, i, j))
         .collect();
     assert!(
         wrong.is_empty(),
