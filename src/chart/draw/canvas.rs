@@ -232,3 +232,23 @@ impl Canvas<'_> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dashes_are_as_long_as_asked_round_corners_too() {
+        let line = [(0.0, 0.0), (33.0, 0.0), (33.0, 67.0)];
+        let dashes = dashed(&line, 7.0, 3.0);
+        assert_eq!(dashes.len(), 10);
+        for dash in &dashes {
+            let length: f64 = dash
+                .windows(2)
+                .map(|pair| libm::hypot(pair[1].0 - pair[0].0, pair[1].1 - pair[0].1))
+                .sum();
+            assert!((length - 7.0).abs() < 1e-9, "{dash:?}");
+        }
+        assert!(dashed(&line[..1], 7.0, 3.0).is_empty());
+    }
+}

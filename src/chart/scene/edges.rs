@@ -5,6 +5,9 @@
 //! rays the ray is sought at which its answer flips: that it is closer to the hole than the edge when it meets the
 //! disk's plane, or that it is not. An order that curves leave out for its thinness is one whose two edges are drawn
 //! on each other: they count as displaced by its thickness.
+//!
+//! Rays are asked for their crossings of the edge's radius, as a ray is anywhere; the frames' fixed steps end at the
+//! disk's plane itself, and are spared the interpolation between steps.
 
 use rayon::prelude::*;
 
@@ -183,5 +186,47 @@ impl Edges {
                 .last()
                 .is_some_and(|end| end.kind == EventKind::End(Fate::Capture)),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::orbit::integrate::{Adaptive, FixedStep, Scheme};
+
+    fn worst(orders: &[Displacements]) -> f64 {
+        assert!(orders.iter().all(|order| order.lost == 0));
+        let all = orders.iter().flat_map(|order| &order.pixels);
+        all.copied().fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn edges_are_found_as_well_as_the_method_finds_rays() {
+        let scene = Scene::builtin("classic").unwrap();
+        let view = View::new(&scene);
+        let edges = Edges::new(&scene, &view, 9);
+        let of = |orbits: &dyn Orbits| edges.of_orbits(orbits);
+        let adaptive = of(&Adaptive::default());
+        assert_eq!(adaptive[0].pixels.len(), 18);
+        assert!(worst(&adaptive) < 1e-9, "{:e}", worst(&adaptive));
+        let rk4 = |h| worst(&of(&FixedStep::new(Scheme::Rk4, h)));
+        assert!(rk4(0.2) > 4.0 * rk4(0.1) && rk4(0.1) < 0.01);
+        let curves = Isoradials::new(&edges.sight, &Exact);
+        let drawn = worst(&edges.of_curves(&curves));
+        assert!(drawn > 0.0 && drawn <= scene.tolerance(), "{drawn:e}");
+    }
+
+    #[test]
+    fn an_order_left_out_is_off_by_its_thickness() {
+        let scene = Scene::builtin("classic").unwrap();
+        let scene = scene.with_size(64, 36).unwrap();
+        let view = View::new(&scene);
+        let edges = Edges::new(&scene, &view, 9);
+        let curves = Isoradials::new(&Sight::new(&scene, &view, 1.0), &Exact);
+        let left_out = curves.left_out().unwrap();
+        let order = &edges.of_curves(&curves)[left_out.order as usize];
+        let most = order.pixels.iter().copied().fold(0.0, f64::max);
+        assert!(order.lost == 0 && most > 1e-3, "{order:?}");
+        assert!(most <= 1.01 * left_out.thickness, "{order:?}");
     }
 }

@@ -97,3 +97,39 @@ pub(super) fn white(scene: &Scene, view: &View, stepper: &Stepper, pixels: &[(u3
         .filter(|&&pixel| stepper.sees(scene, view, pixel));
     seen.count() as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::isoradial::{Isoradials, Sight};
+    use crate::render::mask;
+
+    #[test]
+    fn a_right_frame_has_no_wrong_pixel_and_a_coarse_method_has() {
+        let scene = Scene::builtin("classic").unwrap();
+        let scene = scene.with_size(160, 90).unwrap();
+        let view = View::new(&scene);
+        let truth = Truth::new(&scene, &view, 160 * 30).unwrap();
+        assert_eq!(truth.pixels(), 160 * 30);
+        let curves = Isoradials::new(&Sight::new(&scene, &view, 1e-3), &Exact);
+        let mut frame = mask::render(&view, &curves).unwrap();
+        assert_eq!(truth.wrong_in(&frame, &view), (0, 160 * 30));
+        let (row, _) = truth.rows[3];
+        frame[row as usize * 160 + 5] ^= WHITE;
+        assert_eq!(truth.wrong_in(&frame, &view), (1, 160 * 30));
+        let (wrong, compared) = truth.wrong_of(&scene, &view, &Stepper::euler(0.1), 160 * 10);
+        assert!(wrong > 0 && compared == 160 * 10, "{wrong} of {compared}");
+        let adaptive = Stepper::adaptive(1e-9);
+        assert_eq!(truth.wrong_of(&scene, &view, &adaptive, 1), (0, 160));
+    }
+
+    #[test]
+    fn a_sample_is_spread_over_the_picture() {
+        let scene = Scene::builtin("classic").unwrap();
+        let view = View::new(&scene);
+        let pixels = sample(&view, 256);
+        let left = pixels.iter().filter(|(i, _)| *i < view.width() / 2);
+        let upper = pixels.iter().filter(|(_, j)| *j < view.height() / 2);
+        assert!((120..=136).contains(&left.count()) && (120..=136).contains(&upper.count()));
+    }
+}
