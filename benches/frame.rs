@@ -6,7 +6,6 @@
 mod interleaved;
 
 use darkness::isoradial::{Isoradials, Sight};
-use darkness::orbit::Ray;
 use darkness::orbit::exact::Exact;
 use darkness::orbit::integrate::{FixedStep, Scheme};
 use darkness::render::mask::{WHITE, render, render_every_pixel};
@@ -27,15 +26,10 @@ fn white(pixels: &[u8]) -> f64 {
 /// The baseline's frame.
 fn rk4_frame(scene: &Scene, view: &View) -> Vec<u8> {
     let method = FixedStep::new(Scheme::Rk4, 0.02);
-    let (u_inner, u_outer) = (1.0 / scene.disk().inner, 1.0 / scene.disk().outer);
     let mut pixels = Vec::with_capacity(view.width() as usize * view.height() as usize);
     for j in 0..view.height() {
         for i in 0..view.width() {
-            let pixel = view.pixel(i, j);
-            let s = pixel.transverse();
-            let hit = Ray::new(view.u0(), view.dudphi(pixel)).is_ok_and(|ray| {
-                s > 0.0 && method.disk_hit(ray, view.plane_crossing(pixel.ta, s), u_inner, u_outer)
-            });
+            let hit = pixelwise::sees_in_steps(scene, view, &method, (i, j));
             pixels.push(if hit { WHITE } else { 0 });
         }
     }

@@ -1,5 +1,6 @@
 //! **darkness** renders what a black hole does to the light of its accretion disk.
 
+pub mod chart;
 pub mod cli;
 pub mod isoradial;
 pub mod orbit;

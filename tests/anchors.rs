@@ -8,7 +8,6 @@ mod known_values;
 #[allow(dead_code)]
 mod natural;
 #[path = "common/quadrature.rs"]
-#[allow(dead_code)]
 mod quadrature;
 #[path = "common/tables.rs"]
 mod tables;

@@ -5,7 +5,6 @@
 #[allow(dead_code)]
 mod natural;
 #[path = "common/quadrature.rs"]
-#[allow(dead_code)]
 mod quadrature;
 #[path = "common/tables.rs"]
 mod tables;

@@ -245,7 +245,7 @@ pub(super) fn spec(name: &str) -> anyhow::Result<Spec> {
 /// # Errors
 /// A grid that no table can have.
 pub(super) fn make(spec: &Spec, report: Report) -> anyhow::Result<Table<Memory>> {
-    let bar = report.bar(0, "making the table");
+    let bar = report.bar(0, "making the table", "rows");
     let made = table::generate(spec, &|_, total| {
         bar.set_length(total);
         // Threads finish rows in any order; counted here, the bar never runs backwards.

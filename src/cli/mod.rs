@@ -4,6 +4,7 @@
 //! done, 1 where it failed, 2 where the program was misused. A reader that closes the standard output ends the run
 //! quietly.
 
+mod chart;
 mod explain;
 mod method;
 mod picture;
@@ -46,6 +47,7 @@ Examples:
   darkness table fine                        the most accurate table
   darkness render --table tables/fine.table
   printf 'u0,dudphi\\n0.03,0.1\\n' | darkness trace
+  darkness chart --quick                     speed against accuracy on this machine, as chart.svg
 
 Exit codes: 0 done, 1 failed, 2 misused.";
 
@@ -55,19 +57,28 @@ enum Verb {
     Table(table::TableArgs),
     Trace(trace::TraceArgs),
     Scene(scene::SceneArgs),
+    Chart(chart::ChartArgs),
 }
 
 /// A command line that says something which cannot be meant. Exits with 2, as every other usage error does.
 #[derive(Debug, thiserror::Error)]
 enum Misuse {
-    #[error("{}: the ending of a picture's name says its format, and the only one known is .png; for the standard output give `-o -`", path.display())]
-    Ending { path: PathBuf },
+    #[error("{}: the ending of a picture's name says its format, and the only one known here is .{ending}; for the standard output give `-o -`", path.display())]
+    Ending { path: PathBuf, ending: &'static str },
     #[error(
         "the standard output is a terminal, which cannot show a PNG: send it to a file or a pipe, or give -o a file's name"
     )]
     PictureToTerminal,
-    #[error("{}: -o names the {what} that is read; choose another name for the picture", path.display())]
-    OntoInput { path: PathBuf, what: &'static str },
+    #[error("{}: {option} names the {what} that is read; choose another name for what is written", path.display())]
+    OntoInput {
+        option: &'static str,
+        path: PathBuf,
+        what: &'static str,
+    },
+    #[error("{}: -o and --csv name one file; give each its own", path.display())]
+    OneFileForTwo { path: PathBuf },
+    #[error("the CSV goes to a file, not to the standard output: give --csv a file's name")]
+    CsvToStdout,
     #[error("--size {width}x{height}: {source}")]
     Size {
         width: u32,
@@ -136,6 +147,7 @@ pub fn run() -> ExitCode {
         Verb::Table(args) => table::run(&args, report),
         Verb::Trace(args) => trace::run(&args, report),
         Verb::Scene(args) => scene::run(&args),
+        Verb::Chart(args) => chart::run(&args, report),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

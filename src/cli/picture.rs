@@ -6,6 +6,7 @@ use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use super::{Misuse, StdoutError, target};
+use crate::output::write_whole;
 use crate::render::png;
 use crate::scene::ImageSize;
 
@@ -22,31 +23,40 @@ impl Destination {
     /// # Errors
     /// What stands in the way of a picture there.
     pub(super) fn new(output: Option<&Path>, scene: &Path) -> anyhow::Result<Self> {
-        let path = match output {
-            Some(path) if path == Path::new("-") => {
-                return if io::stdout().is_terminal() {
-                    Err(Misuse::PictureToTerminal.into())
-                } else {
-                    Ok(Self::Stdout)
-                };
-            }
-            Some(path) => path.to_owned(),
-            None => default_name(scene),
-        };
-        let is_png = path
+        let path = output.map_or_else(|| default_name(scene), Path::to_owned);
+        if path == Path::new("-") && io::stdout().is_terminal() {
+            return Err(Misuse::PictureToTerminal.into());
+        }
+        Self::checked(path, "png", scene)
+    }
+
+    /// The place `path`, for a picture of that ending that is made of `scene`; - is the standard output.
+    ///
+    /// # Errors
+    /// What stands in the way of a picture there.
+    pub(super) fn checked(
+        path: PathBuf,
+        ending: &'static str,
+        scene: &Path,
+    ) -> anyhow::Result<Self> {
+        if path == Path::new("-") {
+            return Ok(Self::Stdout);
+        }
+        let has_ending = path
             .extension()
-            .is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
-        if !is_png {
-            return Err(Misuse::Ending { path }.into());
+            .is_some_and(|its| its.eq_ignore_ascii_case(ending));
+        if !has_ending {
+            return Err(Misuse::Ending { path, ending }.into());
         }
         if target::same_file(&path, scene) {
             return Err(Misuse::OntoInput {
+                option: target::OUTPUT,
                 path,
                 what: "scene",
             }
             .into());
         }
-        target::check(&path)?;
+        target::check(&path, target::OUTPUT)?;
         Ok(Self::File(path))
     }
 
@@ -57,6 +67,7 @@ impl Destination {
     pub(super) fn spares(&self, table: &Path) -> Result<(), Misuse> {
         match self {
             Self::File(path) if target::same_file(path, table) => Err(Misuse::OntoInput {
+                option: target::OUTPUT,
                 path: path.clone(),
                 what: "table",
             }),
@@ -68,17 +79,24 @@ impl Destination {
     ///
     /// # Errors
     /// What the system says.
-    pub(super) fn write(&self, pixels: &[u8], size: ImageSize) -> anyhow::Result<()> {
+    pub(super) fn write_png(&self, pixels: &[u8], size: ImageSize) -> anyhow::Result<()> {
         let ImageSize { width, height } = size;
+        self.write(&png::encode(pixels, width, height)?)
+    }
+
+    /// Writes a picture's bytes: a file whole or not at all.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub(super) fn write(&self, bytes: &[u8]) -> anyhow::Result<()> {
         match self {
-            Self::File(path) => png::write(path, pixels, width, height).map_err(|error| {
+            Self::File(path) => write_whole(path, |file| file.write_all(bytes)).map_err(|error| {
                 anyhow::anyhow!("{}: the picture cannot be written: {error}", path.display())
             }),
             Self::Stdout => {
-                let bytes = png::encode(pixels, width, height)?;
                 let mut stdout = io::stdout().lock();
                 stdout
-                    .write_all(&bytes)
+                    .write_all(bytes)
                     .and_then(|()| stdout.flush())
                     .map_err(StdoutError)?;
                 Ok(())

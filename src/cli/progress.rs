@@ -28,15 +28,16 @@ impl Report {
         }
     }
 
-    /// A bar of `total` steps, which vanishes when it is dropped. Nothing is drawn where the standard error is no
-    /// terminal.
-    pub(super) fn bar(self, total: u64, what: &'static str) -> ProgressBar {
+    /// A bar of `total` steps, each of them a `unit`, which vanishes when it is dropped. Nothing is drawn where the
+    /// standard error is no terminal.
+    pub(super) fn bar(self, total: u64, what: &'static str, unit: &str) -> ProgressBar {
         let target = if self.quiet {
             ProgressDrawTarget::hidden()
         } else {
             ProgressDrawTarget::stderr()
         };
-        let style = ProgressStyle::with_template("{msg} {bar:40} {pos}/{len} rows, {eta} left")
+        let template = format!("{{msg}} {{bar:40}} {{pos}}/{{len}} {unit}, {{eta}} left");
+        let style = ProgressStyle::with_template(&template)
             .unwrap_or_else(|_| ProgressStyle::default_bar());
         ProgressBar::with_draw_target(Some(total), target)
             .with_style(style)

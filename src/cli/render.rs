@@ -76,7 +76,7 @@ pub(super) fn run(args: &RenderArgs, report: Report) -> anyhow::Result<()> {
     let pixels = draw(&scene, &view, &needs, &method, report)?;
     let time = duration(start.elapsed());
     let size = scene.image();
-    destination.write(&pixels, size)?;
+    destination.write_png(&pixels, size)?;
     report.note(format_args!(
         "{destination}: {} × {}, {method}, drawn in {time}",
         size.width, size.height
@@ -174,6 +174,6 @@ fn ray_by_ray(
     orbits: &impl Orbits,
     report: Report,
 ) -> Result<Vec<u8>, RenderError> {
-    let bar = report.bar(u64::from(view.height()), "drawing");
+    let bar = report.bar(u64::from(view.height()), "drawing", "rows");
     pixelwise::render(scene, view, orbits, &|| bar.inc(1))
 }

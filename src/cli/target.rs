@@ -4,31 +4,43 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+/// The option that names where things go, in every verb.
+pub(super) const OUTPUT: &str = "-o";
+
 /// Why a file cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum TargetError {
-    #[error("{}: the folder {} does not exist; make it first, or choose another place with -o", path.display(), folder.display())]
-    NoFolder { path: PathBuf, folder: PathBuf },
-    #[error("{}: {} is no folder; choose another place with -o", path.display(), folder.display())]
-    NotAFolder { path: PathBuf, folder: PathBuf },
-    #[error("{} is a folder; give -o a file's name", path.display())]
-    IsAFolder { path: PathBuf },
-    #[error("{} is no regular file, and would be replaced by one; choose another place with -o", path.display())]
-    Special { path: PathBuf },
-    #[error("{}: nothing can be written to the folder {} ({source}); choose another place with -o", path.display(), folder.display())]
+    #[error("{}: the folder {} does not exist; make it first, or choose another place with {option}", path.display(), folder.display())]
+    NoFolder {
+        path: PathBuf,
+        folder: PathBuf,
+        option: &'static str,
+    },
+    #[error("{}: {} is no folder; choose another place with {option}", path.display(), folder.display())]
+    NotAFolder {
+        path: PathBuf,
+        folder: PathBuf,
+        option: &'static str,
+    },
+    #[error("{} is a folder; give {option} a file's name", path.display())]
+    IsAFolder { path: PathBuf, option: &'static str },
+    #[error("{} is no regular file, and would be replaced by one; choose another place with {option}", path.display())]
+    Special { path: PathBuf, option: &'static str },
+    #[error("{}: nothing can be written to the folder {} ({source}); choose another place with {option}", path.display(), folder.display())]
     Unwritable {
         path: PathBuf,
         folder: PathBuf,
+        option: &'static str,
         source: io::Error,
     },
 }
 
-/// Checks that `path` can be written, in a folder that exists.
+/// Checks that `path`, which `option` names, can be written, in a folder that exists.
 ///
 /// # Errors
 /// [`TargetError`]: why it cannot.
-pub(super) fn check(path: &Path) -> Result<(), TargetError> {
-    check_within(path, folder_of(path))
+pub(super) fn check(path: &Path, option: &'static str) -> Result<(), TargetError> {
+    check_within(path, folder_of(path), option)
 }
 
 /// Checks that `path` can be written, its folder being made where it is missing.
@@ -40,7 +52,7 @@ pub(super) fn check_with_parents(path: &Path) -> Result<(), TargetError> {
         .ancestors()
         .map(or_current)
         .find(|folder| folder.exists());
-    check_within(path, existing.unwrap_or(Path::new(".")))
+    check_within(path, existing.unwrap_or(Path::new(".")), OUTPUT)
 }
 
 /// The folder that holds `path`.
@@ -57,17 +69,18 @@ fn or_current(folder: &Path) -> &Path {
     }
 }
 
-fn check_within(path: &Path, folder: &Path) -> Result<(), TargetError> {
+fn check_within(path: &Path, folder: &Path, option: &'static str) -> Result<(), TargetError> {
     let (to, place) = (path.to_owned(), folder.to_owned());
     match fs::metadata(path) {
-        Ok(kind) if kind.is_dir() => return Err(TargetError::IsAFolder { path: to }),
+        Ok(kind) if kind.is_dir() => return Err(TargetError::IsAFolder { path: to, option }),
         // Files are replaced by renaming: a device or a pipe of that name would be gone.
-        Ok(kind) if !kind.is_file() => return Err(TargetError::Special { path: to }),
+        Ok(kind) if !kind.is_file() => return Err(TargetError::Special { path: to, option }),
         _ => {}
     }
     let unwritable = |source| TargetError::Unwritable {
         path: to.clone(),
         folder: place.clone(),
+        option,
         source,
     };
     match fs::metadata(folder) {
@@ -76,12 +89,14 @@ fn check_within(path: &Path, folder: &Path) -> Result<(), TargetError> {
             return Err(TargetError::NotAFolder {
                 path: to,
                 folder: place,
+                option,
             });
         }
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             return Err(TargetError::NoFolder {
                 path: to,
                 folder: place,
+                option,
             });
         }
         Err(error) => return Err(unwritable(error)),
@@ -98,4 +113,15 @@ pub(super) fn same_file(a: &Path, b: &Path) -> bool {
         (Ok(a), Ok(b)) => a == b,
         _ => false,
     }
+}
+
+/// Whether both paths name one place, be there a file or not.
+pub(super) fn same_place(a: &Path, b: &Path) -> bool {
+    let place = |path: &Path| {
+        Some((
+            fs::canonicalize(folder_of(path)).ok()?,
+            path.file_name()?.to_owned(),
+        ))
+    };
+    same_file(a, b) || (place(a).is_some() && place(a) == place(b))
 }

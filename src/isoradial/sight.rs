@@ -88,8 +88,8 @@ impl Sight {
         }
     }
 
-    /// The most pixels that a radian is, for rays at the angle `psi` from the hole's direction or closer to it (see
-    /// the [module's page](self)).
+    /// `1/(p cos² min(psi + a, c))`: the most pixels that a radian is, for rays at the angle `psi` from the hole's
+    /// direction or closer to it. p is [`Self::pixel`], a [`Self::axis`], c [`Self::corner`].
     pub fn pixels_per_radian(&self, psi: f64) -> f64 {
         let cosine = libm::cos((psi + self.axis).min(self.corner));
         1.0 / (self.pixel * cosine * cosine)

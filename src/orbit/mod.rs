@@ -134,6 +134,13 @@ pub trait Orbits: Sync {
     /// # Errors
     /// [`OrbitError::StepLimit`] where a stepped method gives up.
     fn turning_point(&self, ray: Ray) -> Result<Option<TurningPoint>, OrbitError>;
+
+    /// The angle at which `ray` crosses `radius` for the first time, `None` where it never does: what
+    /// [`follow`](Self::follow) says first, without finding out the rest.
+    ///
+    /// # Errors
+    /// As `follow`'s.
+    fn first_crossing(&self, ray: Ray, radius: f64) -> Result<Option<f64>, OrbitError>;
 }
 
 /// Where a ray turns back.
@@ -152,13 +159,7 @@ pub struct TurningPoint {
 pub(crate) fn inverse_radii(radii: &[f64]) -> Result<Vec<WatchedRadius>, OrbitError> {
     let mut watched = Vec::with_capacity(radii.len());
     for &radius in radii {
-        if !(radius > 1.0 && radius <= 1.0 / MIN_U) {
-            return Err(OrbitError::Radius { radius });
-        }
-        watched.push(WatchedRadius {
-            radius,
-            u: 1.0 / radius,
-        });
+        watched.push(WatchedRadius::new(radius)?);
     }
     watched.sort_by(|a, b| b.radius.total_cmp(&a.radius));
     watched.dedup_by(|a, b| a.radius == b.radius);
@@ -172,4 +173,18 @@ pub(crate) struct WatchedRadius {
     pub(crate) radius: f64,
     /// Its inverse.
     pub(crate) u: f64,
+}
+
+impl WatchedRadius {
+    /// # Errors
+    /// [`OrbitError::Radius`] for a radius that is not finite and above 1.
+    pub(crate) fn new(radius: f64) -> Result<Self, OrbitError> {
+        if !(radius > 1.0 && radius <= 1.0 / MIN_U) {
+            return Err(OrbitError::Radius { radius });
+        }
+        Ok(Self {
+            radius,
+            u: 1.0 / radius,
+        })
+    }
 }

@@ -33,12 +33,7 @@ pub trait SweptAngles: Sync {
         let Some(point) = orbit.point_at(u) else {
             return Crossings::default();
         };
-        let beyond = if orbit.inward {
-            u > start.u
-        } else {
-            u < start.u
-        };
-        let first = beyond.then(|| self.direct(orbit, start, point));
+        let first = ahead(orbit, u).then(|| self.direct(orbit, start, point));
         // What lies on the way to the turning point is crossed again after it, and so is all that lies behind the
         // start.
         let second = turns(orbit).then(|| self.around(orbit, start, point));
@@ -53,6 +48,26 @@ pub trait SweptAngles: Sync {
                 outbound: first,
             }
         }
+    }
+
+    /// The first of [`Self::crossings`].
+    #[inline]
+    fn first_crossing_at(&self, orbit: &Orbit, u: f64) -> Option<f64> {
+        let point = orbit.point_at(u)?;
+        if ahead(orbit, u) {
+            Some(self.direct(orbit, orbit.start, point))
+        } else {
+            turns(orbit).then(|| self.around(orbit, orbit.start, point))
+        }
+    }
+}
+
+/// Whether the orbit leaves its start towards inverse radius `u`.
+fn ahead(orbit: &Orbit, u: f64) -> bool {
+    if orbit.inward {
+        u > orbit.start.u
+    } else {
+        u < orbit.start.u
     }
 }
 
@@ -115,5 +130,10 @@ impl<T: SweptAngles> Orbits for T {
             u: turning_u(&orbit),
             angle: 0.5 * self.around(&orbit, orbit.start, orbit.start),
         }))
+    }
+
+    fn first_crossing(&self, ray: Ray, radius: f64) -> Result<Option<f64>, OrbitError> {
+        let WatchedRadius { u, .. } = WatchedRadius::new(radius)?;
+        Ok(self.first_crossing_at(&Orbit::new(ray), u))
     }
 }

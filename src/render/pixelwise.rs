@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::mask::WHITE;
 use super::{RenderError, blank};
+use crate::orbit::integrate::FixedStep;
 use crate::orbit::{Event, EventKind, OrbitError, Orbits, Ray};
 use crate::scene::{Disk, Scene, View};
 
@@ -27,22 +28,51 @@ pub fn render(
         .enumerate()
         .try_for_each(|(j, row)| {
             for (i, pixel) in row.iter_mut().enumerate() {
-                let ray = view.pixel(i as u32, j as u32);
-                let s = ray.transverse();
-                // Straight at the hole or away from it: no plane, no disk.
-                if s > 0.0 {
-                    let first = view.plane_crossing(ray.ta, s);
-                    let start = Ray::new(view.u0(), view.dudphi(ray))?;
-                    let events = orbits.follow(start, &[scene.disk().inner, scene.disk().outer])?;
-                    if meets(&events, first, scene.disk()) {
-                        *pixel = WHITE;
-                    }
+                if sees(scene, view, orbits, (i as u32, j as u32))? {
+                    *pixel = WHITE;
                 }
             }
             row_done();
             Ok::<(), OrbitError>(())
         })?;
     Ok(pixels)
+}
+
+/// Whether a pixel (column, row) sees the disk.
+///
+/// # Errors
+/// What the method returns for a ray that it cannot follow.
+pub fn sees(
+    scene: &Scene,
+    view: &View,
+    orbits: &impl Orbits,
+    (i, j): (u32, u32),
+) -> Result<bool, OrbitError> {
+    let pixel = view.pixel(i, j);
+    let s = pixel.transverse();
+    // Straight at the hole or away from it: no plane, no disk.
+    if s <= 0.0 {
+        return Ok(false);
+    }
+    let start = Ray::new(view.u0(), view.dudphi(pixel))?;
+    let events = orbits.follow(start, &[scene.disk().inner, scene.disk().outer])?;
+    Ok(meets(
+        &events,
+        view.plane_crossing(pixel.ta, s),
+        scene.disk(),
+    ))
+}
+
+/// Whether a pixel (column, row) sees the disk, by steps that end at each crossing of the disk's plane: see
+/// [`FixedStep::disk_hit`].
+#[inline]
+pub fn sees_in_steps(scene: &Scene, view: &View, method: &FixedStep, (i, j): (u32, u32)) -> bool {
+    let pixel = view.pixel(i, j);
+    let s = pixel.transverse();
+    let (u_inner, u_outer) = (1.0 / scene.disk().inner, 1.0 / scene.disk().outer);
+    Ray::new(view.u0(), view.dudphi(pixel)).is_ok_and(|ray| {
+        s > 0.0 && method.disk_hit(ray, view.plane_crossing(pixel.ta, s), u_inner, u_outer)
+    })
 }
 
 /// Whether a ray with these events (crossings of the disk's two radii, and the end) is between the two radii at one

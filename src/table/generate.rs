@@ -6,10 +6,11 @@ use rayon::prelude::*;
 
 use super::charts::{self, CriticalRow};
 use super::format::{self, CONVENTIONS, Layout, Metadata};
+use super::interpolation::{Cubic, Interpolation};
 use super::lookup::Lookup;
 use super::measure::{Measured, measure};
 use super::spec::{Axes, Spec};
-use super::{Memory, Table, spline};
+use super::{Memory, Table};
 
 /// Told how far the making of a table has come: rows done, of how many.
 pub type Progress<'a> = dyn Fn(u64, u64) + Sync + 'a;
@@ -34,10 +35,11 @@ pub fn generate(spec: &Spec, progress: &Progress<'_>) -> Option<Table<Memory>> {
     }
     let total = rows(spec);
     let done = AtomicU64::new(0);
-    let numbers = numbers(spec, &|| {
+    let numbers = numbers::<Cubic>(spec, &|| {
         progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
     });
-    let Measured { error, angles } = measure(spec, &Lookup::new(spec, &numbers, spec.tolerance));
+    let lookup = Lookup::new(spec, &numbers, spec.tolerance, Cubic);
+    let Measured { error, angles } = measure(spec, &lookup);
     let metadata = Metadata {
         conventions: CONVENTIONS.into(),
         spec: spec.clone(),
@@ -60,25 +62,25 @@ pub fn generate(spec: &Spec, progress: &Progress<'_>) -> Option<Table<Memory>> {
     })
 }
 
-/// All numbers of the table that `spec` describes, chart after chart; `row_done` is called once for each row of nodes
-/// (see [`rows`]).
-fn numbers(spec: &Spec, row_done: &(dyn Fn() + Sync)) -> Vec<f64> {
+/// All numbers of the table that `spec` describes, to be read by `K`, chart after chart; `row_done` is called once for
+/// each row of nodes (see [`rows`]).
+pub(super) fn numbers<K: Interpolation>(spec: &Spec, row_done: &(dyn Fn() + Sync)) -> Vec<f64> {
     let axis = spec.critical_axes().orbit;
     let amplitudes: Vec<f64> = (0..axis.nodes)
         .map(|i| CriticalRow::new(axis.node(i)).amplitude())
         .collect();
-    let mut numbers = spline::coefficients(&amplitudes);
-    numbers.extend(chart(spec.critical_axes(), row_done, |e| {
+    let mut numbers = K::keep(amplitudes);
+    numbers.extend(chart::<K, _>(spec.critical_axes(), row_done, |e| {
         let row = CriticalRow::new(e);
         move |gamma| row.value(gamma)
     }));
-    numbers.extend(chart(spec.weak_axes(), row_done, |t| {
+    numbers.extend(chart::<K, _>(spec.weak_axes(), row_done, |t| {
         move |v| charts::weak(v, t)
     }));
-    numbers.extend(chart(spec.trapped_axes(), row_done, |t| {
+    numbers.extend(chart::<K, _>(spec.trapped_axes(), row_done, |t| {
         move |u| charts::trapped(u, t)
     }));
-    numbers.extend(chart(spec.radial_axes(), row_done, |b2| {
+    numbers.extend(chart::<K, _>(spec.radial_axes(), row_done, |b2| {
         move |u| charts::radial(u, b2)
     }));
     numbers
@@ -92,9 +94,9 @@ fn rows(spec: &Spec) -> u64 {
         .sum()
 }
 
-/// One chart's coefficients. `row` makes, of a node on the orbit's axis, the stored function of the place. Each
+/// What is kept of one chart. `row` makes, of a node on the orbit's axis, the stored function of the place. Each
 /// node's value depends on that node alone, so the threads' number and order change nothing.
-fn chart<F: Fn(f64) -> f64>(
+fn chart<K: Interpolation, F: Fn(f64) -> f64>(
     axes: Axes,
     row_done: &(dyn Fn() + Sync),
     row: impl Fn(f64) -> F + Sync,
@@ -110,5 +112,5 @@ fn chart<F: Fn(f64) -> f64>(
             values
         })
         .collect();
-    spline::coefficients_2d(&values.concat(), axes.place.nodes as usize)
+    K::keep_2d(values.concat(), axes.place.nodes as usize)
 }

@@ -1,9 +1,12 @@
 //! Swept angles read from a table.
 
+use core::marker::PhantomData;
+
 use super::charts::{CRITICAL_B, CRITICAL_POLE, LOWER_E2, TRAPPED_POLE, UPPER_E2};
+use super::interpolation::{Cubic, Interpolation};
 use super::logarithm::ln_ratio;
 use super::spec::{Axes, Spec};
-use super::spline::{Scale, Stencil, value, values_2d};
+use super::spline::Scale;
 use crate::orbit::invariants::{Family, Orbit, Point, three_u_minus_two};
 use crate::orbit::path::SweptAngles;
 use wide::f64x2;
@@ -11,33 +14,37 @@ use wide::f64x2;
 /// A table's numbers, ready for lookups: a method like any other (see [`crate::orbit`]).
 ///
 /// A swept angle takes one or two square roots, at most one logarithm (about the critical line only), a division and
-/// two bicubic interpolations.
+/// two interpolations, bicubic ones unless `K` says otherwise.
 #[derive(Debug, Clone, Copy)]
-pub struct Lookup<'a> {
+pub struct Lookup<'a, K = Cubic> {
     /// A, on the critical chart's orbit axis.
     amplitude: &'a [f64],
     critical: Chart<'a>,
     weak: Chart<'a>,
     trapped: Chart<'a>,
     radial: Chart<'a>,
+    /// How the charts are read.
+    kernel: PhantomData<K>,
     error: f64,
 }
 
 #[derive(Debug, Clone, Copy)]
 struct Chart<'a> {
-    coefficients: &'a [f64],
+    numbers: &'a [f64],
     width: usize,
     place: Scale,
     orbit: Scale,
 }
 
 impl<'a> Chart<'a> {
-    fn take(numbers: &mut &'a [f64], axes: Axes) -> Self {
-        let (coefficients, rest) = numbers.split_at(axes.coefficients());
-        *numbers = rest;
+    /// The first chart of `all`, which are those after it from then on; each axis has `beyond` numbers more than nodes.
+    fn take(all: &mut &'a [f64], axes: Axes, beyond: usize) -> Self {
+        let width = axes.place.nodes as usize + beyond;
+        let (numbers, rest) = all.split_at(width * (axes.orbit.nodes as usize + beyond));
+        *all = rest;
         Self {
-            coefficients,
-            width: axes.place.coefficients(),
+            numbers,
+            width,
             place: Scale::new(axes.place),
             orbit: Scale::new(axes.orbit),
         }
@@ -45,27 +52,30 @@ impl<'a> Chart<'a> {
 
     /// The values at two places of one orbit.
     #[inline(always)]
-    fn at(&self, rows: &Stencil, places: f64x2) -> f64x2 {
-        values_2d(
-            self.coefficients,
+    fn at<K: Interpolation>(&self, row: &K::Place, places: f64x2) -> f64x2 {
+        K::values_2d(
+            self.numbers,
             self.width,
-            rows,
-            &self.place.stencils(places),
+            row,
+            &K::places(self.place, places),
         )
     }
 }
 
-impl<'a> Lookup<'a> {
-    /// The charts within `numbers`, which are exactly as many as `spec` says; `error` is that of their angles.
-    pub(crate) fn new(spec: &Spec, mut numbers: &'a [f64], error: f64) -> Self {
-        let (amplitude, rest) = numbers.split_at(spec.critical_axes().orbit.coefficients());
-        numbers = rest;
+impl<'a, K: Interpolation> Lookup<'a, K> {
+    /// The charts within `numbers`, which are exactly as many as `spec` and `kernel` say; `error` is that of their
+    /// angles.
+    pub(crate) fn new(spec: &Spec, numbers: &'a [f64], error: f64, _kernel: K) -> Self {
+        let nodes = spec.critical_axes().orbit.nodes as usize;
+        let (amplitude, mut rest) = numbers.split_at(nodes + K::BEYOND);
+        let mut take = |axes| Chart::take(&mut rest, axes, K::BEYOND);
         Self {
             amplitude,
-            critical: Chart::take(&mut numbers, spec.critical_axes()),
-            weak: Chart::take(&mut numbers, spec.weak_axes()),
-            trapped: Chart::take(&mut numbers, spec.trapped_axes()),
-            radial: Chart::take(&mut numbers, spec.radial_axes()),
+            critical: take(spec.critical_axes()),
+            weak: take(spec.weak_axes()),
+            trapped: take(spec.trapped_axes()),
+            radial: take(spec.radial_axes()),
+            kernel: PhantomData,
             error,
         }
     }
@@ -77,9 +87,12 @@ impl<'a> Lookup<'a> {
         let e = orbit.e2.sqrt();
         let t = (1.0 - e * CRITICAL_B).sqrt();
         let angles = if orbit.family == Family::Trapped {
-            slope / (u - TRAPPED_POLE) * self.trapped.at(&self.trapped.orbit.stencil(t), u)
+            slope / (u - TRAPPED_POLE) * self.trapped.at::<K>(&K::place(self.trapped.orbit, t), u)
         } else {
-            slope / (u + e) * self.weak.at(&self.weak.orbit.stencil(t), u * (1.0 / e))
+            slope / (u + e)
+                * self
+                    .weak
+                    .at::<K>(&K::place(self.weak.orbit, t), u * (1.0 / e))
         };
         angles.to_array()
     }
@@ -88,12 +101,12 @@ impl<'a> Lookup<'a> {
     #[inline(always)]
     fn critical_parts(&self, orbit: &Orbit, points: Pair) -> (f64, [f64; 2], [f64; 2]) {
         let Pair { u, slope } = points;
-        let rows = self.critical.orbit.stencil(orbit.e2.sqrt());
+        let row = K::place(self.critical.orbit, orbit.e2.sqrt());
         let gamma = (u + 1.0 / 3.0).sqrt();
-        let smooth = slope / (u + CRITICAL_POLE) * self.critical.at(&rows, gamma);
+        let smooth = slope / (u + CRITICAL_POLE) * self.critical.at::<K>(&row, gamma);
         let s = ((u + u - 1.0) + (u - 1.0)).abs() * (gamma * (1.0 / 3.0));
         (
-            value(self.amplitude, &rows),
+            K::value(self.amplitude, &row),
             smooth.to_array(),
             (s + slope).to_array(),
         )
@@ -117,7 +130,7 @@ impl Pair {
     }
 }
 
-impl SweptAngles for Lookup<'_> {
+impl<K: Interpolation> SweptAngles for Lookup<'_, K> {
     /// As measured when the table was made.
     fn error(&self) -> f64 {
         self.error
@@ -127,8 +140,8 @@ impl SweptAngles for Lookup<'_> {
     fn direct(&self, orbit: &Orbit, from: Point, to: Point) -> f64 {
         if orbit.e2 > UPPER_E2 {
             let b2 = 1.0 / orbit.e2;
-            let rows = self.radial.orbit.stencil(b2);
-            let [first, second] = self.radial.at(&rows, Pair::new(from, to).u).to_array();
+            let row = K::place(self.radial.orbit, b2);
+            let [first, second] = self.radial.at::<K>(&row, Pair::new(from, to).u).to_array();
             return (second - first).abs() * b2.sqrt();
         }
         if orbit.e2 < LOWER_E2 {

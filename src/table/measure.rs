@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::charts::{CRITICAL_B, TRAPPED_U, WEAK_V};
+use super::interpolation::Interpolation;
 use super::lookup::Lookup;
 use super::spec::Spec;
 use super::spline::Axis;
@@ -37,7 +38,7 @@ struct Row {
 ///
 /// Both methods are given the same orbit, so that what is compared is the interpolation alone. The result depends on
 /// nothing else, thread count included.
-pub fn measure(spec: &Spec, lookup: &Lookup<'_>) -> Measured {
+pub fn measure<K: Interpolation>(spec: &Spec, lookup: &Lookup<'_, K>) -> Measured {
     let middles =
         |axis: Axis| (1..axis.nodes).map(move |i| 0.5 * (axis.node(i - 1) + axis.node(i)));
     let from_t = |t: f64| (1.0 - t) * (1.0 + t) / CRITICAL_B;
@@ -73,7 +74,7 @@ fn apoapsis(e: f64) -> f64 {
 
 /// The rays of one `e`: starts and radii from the additive sequence of the plastic number's powers, which fills the
 /// square evenly (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
-fn along_orbit(row: Row, lookup: &Lookup<'_>) -> Measured {
+fn along_orbit<K: Interpolation>(row: Row, lookup: &Lookup<'_, K>) -> Measured {
     let Row {
         e,
         places: (least, greatest),

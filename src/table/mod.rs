@@ -13,6 +13,7 @@ pub mod charts;
 mod file;
 pub mod format;
 mod generate;
+mod interpolation;
 mod logarithm;
 mod lookup;
 mod measure;
@@ -22,6 +23,7 @@ pub(crate) mod spline;
 pub use file::{TableError, default_path, open, save};
 pub use format::{FormatError, Metadata};
 pub use generate::{Progress, generate};
+pub use interpolation::{Cubic, Grid, Interpolation, Linear, Nearest};
 pub use lookup::Lookup;
 pub use measure::{Measured, measure};
 pub use spec::{Nodes, Spec};
@@ -81,7 +83,7 @@ impl<B: FixedBytes> Table<B> {
         // The cast was checked when the table was opened, and the bytes are where they were.
         let numbers = format::numbers(self.bytes(), self.layout.numbers_at).unwrap_or_default();
         let metadata = &self.layout.metadata;
-        Lookup::new(&metadata.spec, numbers, metadata.measured_error)
+        Lookup::new(&metadata.spec, numbers, metadata.measured_error, Cubic)
     }
 }
 
@@ -92,5 +94,9 @@ impl<B: FixedBytes + Sync> Orbits for Table<B> {
 
     fn turning_point(&self, ray: Ray) -> Result<Option<TurningPoint>, OrbitError> {
         self.lookup().turning_point(ray)
+    }
+
+    fn first_crossing(&self, ray: Ray, radius: f64) -> Result<Option<f64>, OrbitError> {
+        self.lookup().first_crossing(ray, radius)
     }
 }

@@ -59,7 +59,7 @@ impl Axes {
     }
 
     /// How many coefficients the chart has.
-    pub(crate) fn coefficients(self) -> usize {
+    fn coefficients(self) -> usize {
         self.place.coefficients() * self.orbit.coefficients()
     }
 }
@@ -77,6 +77,31 @@ impl Spec {
             _ => return None,
         };
         toml::from_str(text).ok()
+    }
+
+    /// The specification with `factor` times as many nodes along every axis, or as few as an axis may have.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let scaled = |nodes: u32| ((f64::from(nodes) * factor).round() as u32).max(Axis::FEWEST);
+        let both = |nodes: Nodes| Nodes {
+            place: scaled(nodes.place),
+            orbit: scaled(nodes.orbit),
+        };
+        Self {
+            critical: both(self.critical),
+            weak: both(self.weak),
+            trapped: both(self.trapped),
+            radial: both(self.radial),
+            ..self.clone()
+        }
+    }
+
+    /// How many nodes the four charts have together.
+    pub fn nodes(&self) -> u64 {
+        [self.critical, self.weak, self.trapped, self.radial]
+            .iter()
+            .map(|chart| u64::from(chart.place) * u64::from(chart.orbit))
+            .sum()
     }
 
     pub(crate) fn critical_axes(&self) -> Axes {

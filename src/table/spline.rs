@@ -23,14 +23,14 @@ pub(crate) struct Axis {
 
 /// Four neighbouring coefficients and their weights.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Stencil {
+pub struct Stencil {
     first: usize,
     weights: [f64; 4],
 }
 
 /// The stencils of two places on one axis, their weights side by side.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct StencilPair {
+pub struct StencilPair {
     first: [usize; 2],
     weights: [f64x2; 4],
 }
@@ -58,9 +58,12 @@ impl Axis {
     }
 }
 
+/// 1.5 · 2⁵²: a sum with it is rounded to an integer, which stands in its lowest bits.
+const ROUNDER: f64 = 6_755_399_441_055_744.0;
+
 /// An axis ready for lookups.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Scale {
+pub struct Scale {
     start: f64,
     per_unit: f64,
     last_cell: i32,
@@ -101,11 +104,26 @@ impl Scale {
         }
     }
 
+    /// The cell of `x`, within the axis, and how much of it lies before x.
+    #[inline(always)]
+    pub(super) fn cell_and_share(self, x: f64) -> (usize, f64) {
+        let t = (x - self.start) * self.per_unit;
+        let cell = self.cell(t);
+        (cell as usize, t - f64::from(cell))
+    }
+
+    /// The node nearest to `x`.
+    #[inline(always)]
+    pub(super) fn nearest(self, x: f64) -> usize {
+        let t = (x - self.start) * self.per_unit;
+        ((t + ROUNDER).to_bits() as i32)
+            .max(0)
+            .min(self.last_cell + 1) as usize
+    }
+
     /// The cell of `t`, in units of cells, within the axis.
     #[inline(always)]
     fn cell(self, t: f64) -> i32 {
-        /// 1.5 · 2⁵²: a sum with it is rounded to an integer, which stands in its lowest bits.
-        const ROUNDER: f64 = 6_755_399_441_055_744.0;
         // Rounding t − ½ gives the cell; a node belongs to the one or the other of its cells, whose cubics agree
         // there. Whatever the bits hold for a t that is no number of a cell, the index stays within the axis.
         ((t - 0.5 + ROUNDER).to_bits() as i32)

@@ -1,8 +1,10 @@
 //! Steps as long as an error estimate allows.
 
-use super::crossings::{Crossings, Piece};
-use super::{DEFAULT_MAX_STEPS, Departure, State, acceleration, depart, dop853, opposite, root};
-use crate::orbit::{Event, OrbitError, Orbits, Ray, TurningPoint};
+use super::crossings::{Crossings, Log, Piece};
+use super::{
+    DEFAULT_MAX_STEPS, Departure, Flight, State, acceleration, depart, dop853, opposite, root,
+};
+use crate::orbit::{Event, OrbitError, Orbits, Ray, TurningPoint, WatchedRadius};
 
 /// The orbit equation integrated with the Runge–Kutta method DOP853 in steps that keep each swept angle's error below
 /// a tolerance.
@@ -78,18 +80,26 @@ impl Default for Adaptive {
 
 impl Orbits for Adaptive {
     fn follow(&self, ray: Ray, radii: &[f64]) -> Result<Vec<Event>, OrbitError> {
-        self.fly(ray, radii).map(Crossings::into_events)
+        self.all_events(ray, radii)
     }
 
     fn turning_point(&self, ray: Ray) -> Result<Option<TurningPoint>, OrbitError> {
-        self.fly(ray, &[]).map(|flight| flight.turning_point())
+        self.turn(ray)
+    }
+
+    fn first_crossing(&self, ray: Ray, radius: f64) -> Result<Option<f64>, OrbitError> {
+        self.first_event(ray, radius)
     }
 }
 
-impl Adaptive {
-    /// The whole flight, from the start to its end.
-    fn fly(&self, ray: Ray, radii: &[f64]) -> Result<Crossings, OrbitError> {
-        let (mut state, mut crossings) = match depart(ray, radii)? {
+impl Flight for Adaptive {
+    fn fly<'a, L: Log>(
+        &self,
+        ray: Ray,
+        watched: &'a [WatchedRadius],
+        log: L,
+    ) -> Result<Crossings<'a, L>, OrbitError> {
+        let (mut state, mut crossings) = match depart(ray, watched, log) {
             Departure::Done(crossings) => return Ok(crossings),
             Departure::Bound(state, crossings) => (state, crossings),
         };
@@ -124,7 +134,13 @@ impl Adaptive {
 
 /// Reports what is met on the step of length `h` from `from`, at swept angle `angle`, to `to`. Returns whether the
 /// flight ends on it.
-fn pass_step(crossings: &mut Crossings, from: State, to: State, h: f64, angle: f64) -> bool {
+fn pass_step<L: Log>(
+    crossings: &mut Crossings<'_, L>,
+    from: State,
+    to: State,
+    h: f64,
+    angle: f64,
+) -> bool {
     let inward = from.w > 0.0 || (from.w == 0.0 && to.u > from.u);
     if !opposite(from.w, to.w) {
         let piece = Piece {
@@ -161,8 +177,8 @@ fn pass_step(crossings: &mut Crossings, from: State, to: State, h: f64, angle: f
 }
 
 /// Reports what is met on the piece between the two fractions `(first, last)` of a step.
-fn pass_piece(
-    crossings: &mut Crossings,
+fn pass_piece<L: Log>(
+    crossings: &mut Crossings<'_, L>,
     piece: Piece,
     (first, last): (f64, f64),
     from: State,

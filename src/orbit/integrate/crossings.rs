@@ -15,12 +15,34 @@ pub(super) struct Piece {
     pub(super) turns: bool,
 }
 
+/// What is kept of a flight's events.
+pub(super) trait Log {
+    /// Takes the next event, and tells whether another is wanted.
+    fn take(&mut self, event: Event) -> bool;
+}
+
+/// All of them.
+impl Log for Vec<Event> {
+    fn take(&mut self, event: Event) -> bool {
+        self.push(event);
+        true
+    }
+}
+
+/// The first.
+impl Log for Option<Event> {
+    fn take(&mut self, event: Event) -> bool {
+        *self = Some(event);
+        false
+    }
+}
+
 /// The events of a flight so far, and the radii it may cross next.
 #[derive(Debug)]
-pub(super) struct Crossings {
+pub(super) struct Crossings<'a, L> {
     /// By ascending u.
-    watched: Vec<WatchedRadius>,
-    events: Vec<Event>,
+    watched: &'a [WatchedRadius],
+    log: L,
     turning_point: Option<TurningPoint>,
     /// Nearest level of u (a watched radius, infinity or the horizon) at or below the present u.
     below: f64,
@@ -28,14 +50,12 @@ pub(super) struct Crossings {
     above: f64,
 }
 
-impl Crossings {
+impl<'a, L: Log> Crossings<'a, L> {
     /// A flight that begins at `u`, watched at `watched` (by ascending u).
-    pub(super) fn new(watched: Vec<WatchedRadius>, u: f64) -> Self {
-        // Every radius is passed twice at most.
-        let events = Vec::with_capacity(2 * watched.len() + 1);
+    pub(super) fn new(watched: &'a [WatchedRadius], log: L, u: f64) -> Self {
         let mut crossings = Self {
             watched,
-            events,
+            log,
             turning_point: None,
             below: 0.0,
             above: 1.0,
@@ -53,7 +73,8 @@ impl Crossings {
     }
 
     /// Reports what is met along a piece, `angle_at(u)` being the swept angle at which the piece reaches u; it is
-    /// asked in the order the ray meets them. Returns whether the flight ends on it.
+    /// asked in the order the ray meets them. Returns whether the flight ends on it, or has been followed as far as is
+    /// wanted.
     pub(super) fn pass(&mut self, piece: Piece, mut angle_at: impl FnMut(f64) -> f64) -> bool {
         let Piece {
             from,
@@ -78,16 +99,19 @@ impl Crossings {
             EventKind::Outbound
         };
         let mut report = |level: &WatchedRadius| {
-            self.events.push(Event {
+            self.log.take(Event {
                 kind,
                 radius: level.radius,
                 angle: angle_at(level.u),
-            });
+            })
         };
-        if inward {
-            passed.iter().for_each(&mut report);
+        let wanted = if inward {
+            passed.iter().all(&mut report)
         } else {
-            passed.iter().rev().for_each(&mut report);
+            passed.iter().rev().all(&mut report)
+        };
+        if !wanted {
+            return true;
         }
         let end = if inward && to >= 1.0 {
             Some((Fate::Capture, 1.0, 1.0))
@@ -97,7 +121,7 @@ impl Crossings {
             None
         };
         if let Some((fate, radius, u)) = end {
-            self.events.push(Event {
+            self.log.take(Event {
                 kind: EventKind::End(fate),
                 radius,
                 angle: angle_at(u),
@@ -129,9 +153,9 @@ impl Crossings {
         self.turning_point
     }
 
-    /// All events reported.
-    pub(super) fn into_events(self) -> Vec<Event> {
-        self.events
+    /// What was reported.
+    pub(super) fn into_log(self) -> L {
+        self.log
     }
 }
 
@@ -141,7 +165,8 @@ mod tests {
     use crate::orbit::inverse_radii;
 
     fn radii_met(pieces: &[(f64, f64, bool)]) -> Vec<f64> {
-        let mut crossings = Crossings::new(inverse_radii(&[2.0, 4.0, 8.0]).unwrap(), pieces[0].0);
+        let watched = inverse_radii(&[2.0, 4.0, 8.0]).unwrap();
+        let mut crossings = Crossings::new(&watched, Vec::new(), pieces[0].0);
         for &(from, to, turns) in pieces {
             crossings.pass(
                 Piece {
@@ -154,7 +179,7 @@ mod tests {
             );
         }
         crossings
-            .into_events()
+            .into_log()
             .iter()
             .map(|event| event.radius)
             .collect()
@@ -186,7 +211,8 @@ mod tests {
 
     #[test]
     fn nothing_is_clear_from_a_level_itself() {
-        let mut crossings = Crossings::new(inverse_radii(&[4.0]).unwrap(), 0.25);
+        let watched = inverse_radii(&[4.0]).unwrap();
+        let mut crossings = Crossings::new(&watched, Vec::new(), 0.25);
         assert!(!crossings.clear_until(0.3) && !crossings.clear_until(0.2));
         crossings.pass(
             Piece {

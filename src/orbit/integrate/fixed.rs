@@ -1,8 +1,8 @@
 //! Steps of one length.
 
-use super::crossings::{Crossings, Piece};
-use super::{DEFAULT_MAX_STEPS, Departure, State, acceleration, depart, opposite, root};
-use crate::orbit::{Event, OrbitError, Orbits, Ray, TurningPoint};
+use super::crossings::{Crossings, Log, Piece};
+use super::{DEFAULT_MAX_STEPS, Departure, Flight, State, acceleration, depart, opposite, root};
+use crate::orbit::{Event, OrbitError, Orbits, Ray, TurningPoint, WatchedRadius};
 
 /// How a step is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -38,23 +38,16 @@ impl FixedStep {
         }
     }
 
-    /// The whole flight, from the start to its end.
-    fn fly(&self, ray: Ray, radii: &[f64]) -> Result<Crossings, OrbitError> {
-        match self.scheme {
-            Scheme::Euler => self.fly_by(euler, pass_line, ray, radii),
-            Scheme::Rk4 => self.fly_by(rk4, pass_cubic, ray, radii),
-        }
-    }
-
     #[inline]
-    fn fly_by(
+    fn fly_by<'a, L: Log>(
         &self,
         step: impl Fn(State, f64) -> State,
-        pass_step: impl Fn(&mut Crossings, &Step) -> bool,
+        pass_step: impl Fn(&mut Crossings<'a, L>, &Step) -> bool,
         ray: Ray,
-        radii: &[f64],
-    ) -> Result<Crossings, OrbitError> {
-        let (mut from, mut crossings) = match depart(ray, radii)? {
+        watched: &'a [WatchedRadius],
+        log: L,
+    ) -> Result<Crossings<'a, L>, OrbitError> {
+        let (mut from, mut crossings) = match depart(ray, watched, log) {
             Departure::Done(crossings) => return Ok(crossings),
             Departure::Bound(state, crossings) => (state, crossings),
         };
@@ -91,13 +84,31 @@ impl FixedStep {
     }
 }
 
+impl Flight for FixedStep {
+    fn fly<'a, L: Log>(
+        &self,
+        ray: Ray,
+        watched: &'a [WatchedRadius],
+        log: L,
+    ) -> Result<Crossings<'a, L>, OrbitError> {
+        match self.scheme {
+            Scheme::Euler => self.fly_by(euler, pass_line, ray, watched, log),
+            Scheme::Rk4 => self.fly_by(rk4, pass_cubic, ray, watched, log),
+        }
+    }
+}
+
 impl Orbits for FixedStep {
     fn follow(&self, ray: Ray, radii: &[f64]) -> Result<Vec<Event>, OrbitError> {
-        self.fly(ray, radii).map(Crossings::into_events)
+        self.all_events(ray, radii)
     }
 
     fn turning_point(&self, ray: Ray) -> Result<Option<TurningPoint>, OrbitError> {
-        self.fly(ray, &[]).map(|flight| flight.turning_point())
+        self.turn(ray)
+    }
+
+    fn first_crossing(&self, ray: Ray, radius: f64) -> Result<Option<f64>, OrbitError> {
+        self.first_event(ray, radius)
     }
 }
 
@@ -138,7 +149,7 @@ pub(super) fn rk4(State { u, w }: State, h: f64) -> State {
 }
 
 /// Reports what is met on a step of Euler's method, a straight line. Returns whether the flight ends on it.
-fn pass_line(crossings: &mut Crossings, step: &Step) -> bool {
+fn pass_line<L: Log>(crossings: &mut Crossings<'_, L>, step: &Step) -> bool {
     let Step { from, to, h, angle } = *step;
     // The polygon turns at its corners: where du/dφ changes sign over the step, u still follows the first.
     let piece = Piece {
@@ -154,7 +165,7 @@ fn pass_line(crossings: &mut Crossings, step: &Step) -> bool {
 }
 
 /// Reports what is met on a step of the Runge–Kutta method, by its cubic. Returns whether the flight ends on it.
-fn pass_cubic(crossings: &mut Crossings, step: &Step) -> bool {
+fn pass_cubic<L: Log>(crossings: &mut Crossings<'_, L>, step: &Step) -> bool {
     let Step { from, to, h, .. } = *step;
     let cubic = Cubic::new(step);
     let inward = from.w > 0.0 || (from.w == 0.0 && to.u > from.u);
@@ -224,9 +235,9 @@ impl Cubic {
     }
 
     /// Reports what is met between the angles `first` and `last` from the step's start, itself at `angle`.
-    fn pass(
+    fn pass<L: Log>(
         &self,
-        crossings: &mut Crossings,
+        crossings: &mut Crossings<'_, L>,
         piece: Piece,
         (first, last): (f64, f64),
         angle: f64,

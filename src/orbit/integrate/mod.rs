@@ -18,8 +18,8 @@ mod root;
 pub use adaptive::Adaptive;
 pub use fixed::{FixedStep, Scheme};
 
-use super::{OrbitError, Ray};
-use crossings::{Crossings, Piece};
+use super::{Event, EventKind, OrbitError, Ray, TurningPoint, WatchedRadius, inverse_radii};
+use crossings::{Crossings, Log, Piece};
 
 /// Steps after which a stepped solution gives up, where nothing else is asked for. A ray one unit in the last place
 /// from critical winds some 40 radians, which even steps of 0.001 cover in less than half of this.
@@ -54,24 +54,23 @@ fn opposite(a: f64, b: f64) -> bool {
 }
 
 /// What is left of a ray's flight when it is about to be stepped.
-enum Departure {
+enum Departure<'a, L> {
     /// The path is straight: nothing is left to do.
-    Done(Crossings),
+    Done(Crossings<'a, L>),
     /// The state to step from, and the crossings to look for.
-    Bound(State, Crossings),
+    Bound(State, Crossings<'a, L>),
 }
 
 /// Prepares a flight: the rays that are straight lines in (φ, u), among them those with infinite du/dφ, whose angles
 /// are all 0, are answered here.
-fn depart(ray: Ray, radii: &[f64]) -> Result<Departure, OrbitError> {
-    let watched = super::inverse_radii(radii)?;
+fn depart<L: Log>(ray: Ray, watched: &[WatchedRadius], log: L) -> Departure<'_, L> {
     let start = State {
         u: ray.u(),
         w: ray.dudphi(),
     };
     if start.w.abs() >= STRAIGHT {
         let inward = start.w > 0.0;
-        let mut crossings = Crossings::new(watched, start.u);
+        let mut crossings = Crossings::new(watched, log, start.u);
         let piece = Piece {
             from: start.u,
             to: if inward { 1.0 } else { 0.0 },
@@ -79,9 +78,47 @@ fn depart(ray: Ray, radii: &[f64]) -> Result<Departure, OrbitError> {
             turns: false,
         };
         crossings.pass(piece, |u| (u - start.u).abs() / start.w.abs());
-        return Ok(Departure::Done(crossings));
+        return Departure::Done(crossings);
     }
-    Ok(Departure::Bound(start, Crossings::new(watched, start.u)))
+    Departure::Bound(start, Crossings::new(watched, log, start.u))
+}
+
+/// A method that steps along a flight until its end, or until nothing more is wanted of it.
+trait Flight {
+    /// Flies past `watched` (by ascending u), noting in `log` what happens.
+    ///
+    /// # Errors
+    /// [`OrbitError::StepLimit`]
+    fn fly<'a, L: Log>(
+        &self,
+        ray: Ray,
+        watched: &'a [WatchedRadius],
+        log: L,
+    ) -> Result<Crossings<'a, L>, OrbitError>;
+
+    /// [`Orbits::follow`](super::Orbits::follow)
+    fn all_events(&self, ray: Ray, radii: &[f64]) -> Result<Vec<Event>, OrbitError> {
+        let watched = inverse_radii(radii)?;
+        // Every radius is passed twice at most.
+        let log = Vec::with_capacity(2 * watched.len() + 1);
+        self.fly(ray, &watched, log).map(Crossings::into_log)
+    }
+
+    /// [`Orbits::first_crossing`](super::Orbits::first_crossing)
+    fn first_event(&self, ray: Ray, radius: f64) -> Result<Option<f64>, OrbitError> {
+        let watched = [WatchedRadius::new(radius)?];
+        let first = self.fly(ray, &watched, None)?.into_log();
+        Ok(first.and_then(|event: Event| match event.kind {
+            EventKind::Inbound | EventKind::Outbound => Some(event.angle),
+            EventKind::End(_) => None,
+        }))
+    }
+
+    /// [`Orbits::turning_point`](super::Orbits::turning_point)
+    fn turn(&self, ray: Ray) -> Result<Option<TurningPoint>, OrbitError> {
+        let flight = self.fly(ray, &[], None)?;
+        Ok(flight.turning_point())
+    }
 }
 
 #[cfg(test)]
@@ -142,6 +179,27 @@ mod tests {
                     [outbound(3.0), outbound(6.0), outbound(12.0), ESCAPE],
                     "{name}, w = {w:e}"
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn the_first_crossing_is_the_first_of_all() {
+        for (name, method) in all_methods() {
+            for (u, w) in [
+                (0.05, 0.29),
+                (0.01, 0.45),
+                (0.3, -0.2),
+                (0.8, -0.05),
+                (0.1, 1e9),
+            ] {
+                let ray = Ray::new(u, w).unwrap();
+                for radius in [1.2, 3.0, 6.0, 12.0] {
+                    let events = method.follow(ray, &[radius]).unwrap();
+                    let first = (events.len() > 1).then(|| events[0].angle);
+                    let found = method.first_crossing(ray, radius).unwrap();
+                    assert_eq!(found, first, "{name}, {ray:?} at r = {radius}");
+                }
             }
         }
     }

@@ -1,0 +1,135 @@
+//! How many pixels of a frame are wrong, against each pixel's own exact ray.
+
+use rayon::prelude::*;
+
+use super::super::methods::Stepper;
+use crate::orbit::OrbitError;
+use crate::orbit::exact::Exact;
+use crate::render::mask::WHITE;
+use crate::render::{RenderError, pixelwise};
+use crate::scene::{Scene, View};
+
+/// What the pixels of some rows should be.
+pub(super) struct Truth {
+    rows: Vec<(u32, Vec<u8>)>,
+}
+
+impl Truth {
+    /// The rows of `scene` by the exact method, on all threads: all of them, or as many, evenly spread, as have `most`
+    /// pixels together.
+    pub(super) fn new(scene: &Scene, view: &View, most: u64) -> Result<Self, RenderError> {
+        let count = (most / u64::from(view.width())).clamp(1, u64::from(view.height()));
+        let height = u64::from(view.height());
+        let rows: Result<Vec<_>, _> = (0..count)
+            .into_par_iter()
+            .map(|k| {
+                let j = ((2 * k + 1) * height / (2 * count)) as u32;
+                let row: Result<Vec<u8>, OrbitError> = (0..view.width())
+                    .map(|i| {
+                        let sees = pixelwise::sees(scene, view, &Exact, (i, j))?;
+                        Ok(if sees { WHITE } else { 0 })
+                    })
+                    .collect();
+                row.map(|row| (j, row))
+            })
+            .collect();
+        Ok(Self { rows: rows? })
+    }
+
+    /// How many pixels are known.
+    pub(super) fn pixels(&self) -> u64 {
+        self.rows.iter().map(|(_, row)| row.len() as u64).sum()
+    }
+
+    /// How many pixels of `frame` are wrong, of how many known.
+    pub(super) fn wrong_in(&self, frame: &[u8], view: &View) -> (u64, u64) {
+        let width = view.width() as usize;
+        let wrong = self.rows.iter().map(|(j, truth)| {
+            let row = frame.chunks_exact(width).nth(*j as usize);
+            let pairs = row.unwrap_or_default().iter().zip(truth);
+            pairs.filter(|(pixel, truth)| pixel != truth).count() as u64
+        });
+        (wrong.sum(), self.pixels())
+    }
+
+    /// How many pixels a method that steps each ray gets wrong, of how many: on as many of the rows, evenly spread, as
+    /// `budget` pixels allow.
+    pub(super) fn wrong_of(
+        &self,
+        scene: &Scene,
+        view: &View,
+        stepper: &Stepper,
+        budget: u64,
+    ) -> (u64, u64) {
+        let affordable = (budget / u64::from(view.width())).max(1) as usize;
+        let stride = self.rows.len().div_ceil(affordable);
+        let chosen: Vec<_> = self.rows.iter().skip(stride / 2).step_by(stride).collect();
+        let wrong = chosen.par_iter().map(|(j, truth)| {
+            let row = (0..view.width()).zip(truth);
+            row.filter(|(i, truth)| stepper.sees(scene, view, (*i, *j)) != (**truth == WHITE))
+                .count() as u64
+        });
+        let compared = chosen.iter().map(|(_, row)| row.len() as u64).sum();
+        (wrong.sum(), compared)
+    }
+}
+
+/// `count` pixels spread evenly over the picture, by the same sequence on every machine.
+pub(super) fn sample(view: &View, count: u32) -> Vec<(u32, u32)> {
+    let place = |k: u32, step: f64, side: u32| {
+        let x = 0.5 + f64::from(k) * step;
+        (((x - x.floor()) * f64::from(side)) as u32).min(side - 1)
+    };
+    (0..count)
+        .map(|k| {
+            (
+                place(k, 0.754_877_666_246_692_7, view.width()),
+                place(k, 0.569_840_290_998_053_2, view.height()),
+            )
+        })
+        .collect()
+}
+
+/// How many of some pixels see the disk.
+pub(super) fn white(scene: &Scene, view: &View, stepper: &Stepper, pixels: &[(u32, u32)]) -> f64 {
+    let seen = pixels
+        .iter()
+        .filter(|&&pixel| stepper.sees(scene, view, pixel));
+    seen.count() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::isoradial::{Isoradials, Sight};
+    use crate::render::mask;
+
+    #[test]
+    fn a_right_frame_has_no_wrong_pixel_and_a_coarse_method_has() {
+        let scene = Scene::builtin("classic").unwrap();
+        let scene = scene.with_size(160, 90).unwrap();
+        let view = View::new(&scene);
+        let truth = Truth::new(&scene, &view, 160 * 30).unwrap();
+        assert_eq!(truth.pixels(), 160 * 30);
+        let curves = Isoradials::new(&Sight::new(&scene, &view, 1e-3), &Exact);
+        let mut frame = mask::render(&view, &curves).unwrap();
+        assert_eq!(truth.wrong_in(&frame, &view), (0, 160 * 30));
+        let (row, _) = truth.rows[3];
+        frame[row as usize * 160 + 5] ^= WHITE;
+        assert_eq!(truth.wrong_in(&frame, &view), (1, 160 * 30));
+        let (wrong, compared) = truth.wrong_of(&scene, &view, &Stepper::euler(0.1), 160 * 10);
+        assert!(wrong > 0 && compared == 160 * 10, "{wrong} of {compared}");
+        let adaptive = Stepper::adaptive(1e-9);
+        assert_eq!(truth.wrong_of(&scene, &view, &adaptive, 1), (0, 160));
+    }
+
+    #[test]
+    fn a_sample_is_spread_over_the_picture() {
+        let scene = Scene::builtin("classic").unwrap();
+        let view = View::new(&scene);
+        let pixels = sample(&view, 256);
+        let left = pixels.iter().filter(|(i, _)| *i < view.width() / 2);
+        let upper = pixels.iter().filter(|(_, j)| *j < view.height() / 2);
+        assert!((120..=136).contains(&left.count()) && (120..=136).contains(&upper.count()));
+    }
+}

@@ -1,0 +1,114 @@
+//! `darkness chart`: speed against accuracy, measured on this machine.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Args;
+
+use super::picture::Destination;
+use super::progress::{Report, duration};
+use super::{Misuse, StdoutError, Threads, start_threads, target};
+use crate::chart::{Chart, Effort, draw, write_csv};
+use crate::output::write_whole;
+use crate::scene::{DEFAULT_SCENE, Scene};
+
+/// Measure speed against accuracy on this machine, and draw it as an SVG figure
+///
+/// Every method is asked the same questions: single rays, near-critical rays, and SCENE's frame. Times are medians of
+/// interleaved repetitions on one thread; run it on a machine that has little else to do.
+#[derive(Debug, Args)]
+pub(super) struct ChartArgs {
+    /// The scene whose frame is measured: a TOML file, or the name of a built-in scene (`darkness scene` lists them)
+    #[arg(value_name = "SCENE", default_value = DEFAULT_SCENE)]
+    scene: PathBuf,
+    /// Where the figure goes: a file ending in .svg, or - for the standard output
+    #[arg(short, long, value_name = "OUT.svg", default_value = "chart.svg")]
+    output: PathBuf,
+    /// Write every measured point to this file too
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Measure in some seconds, with fewer rays, settings and repetitions, rather than in some minutes
+    #[arg(long)]
+    quick: bool,
+    #[command(flatten)]
+    threads: Threads,
+}
+
+/// Runs the verb.
+pub(super) fn run(args: &ChartArgs, report: Report) -> anyhow::Result<()> {
+    let scene = Scene::load(&args.scene)?;
+    let destination = Destination::checked(args.output.clone(), "svg", &args.scene)?;
+    if let Some(path) = &args.csv {
+        check_csv(path, &args.output, &args.scene)?;
+    }
+    start_threads(args.threads.threads)?;
+
+    let start = Instant::now();
+    let chart = measure(args, &scene, report)?;
+    let svg = draw::svg(&chart)?;
+    if let Some(path) = &args.csv {
+        write_whole(path, |file| write_csv(&chart, file)).map_err(|error| {
+            anyhow::anyhow!("{}: the CSV cannot be written: {error}", path.display())
+        })?;
+    }
+    destination.write(svg.as_bytes())?;
+    let summary = format!("{}\n", chart.frame.summary());
+    match destination {
+        Destination::Stdout => report.note(summary.trim_end()),
+        Destination::File(_) => print(&summary)?,
+    }
+    let time = duration(start.elapsed());
+    report.note(format_args!("{destination}: measured and drawn in {time}"));
+    Ok(())
+}
+
+fn print(text: &str) -> Result<(), StdoutError> {
+    let mut stdout = io::stdout().lock();
+    stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.flush())
+        .map_err(StdoutError)
+}
+
+/// Checks that the CSV can be written to `path`, and to nothing else that is read or written.
+fn check_csv(path: &Path, figure: &Path, scene: &Path) -> anyhow::Result<()> {
+    const OPTION: &str = "--csv";
+    if path == Path::new("-") {
+        return Err(Misuse::CsvToStdout.into());
+    }
+    if target::same_file(path, scene) {
+        return Err(Misuse::OntoInput {
+            option: OPTION,
+            path: path.to_owned(),
+            what: "scene",
+        }
+        .into());
+    }
+    if figure != Path::new("-") && target::same_place(path, figure) {
+        return Err(Misuse::OneFileForTwo {
+            path: path.to_owned(),
+        }
+        .into());
+    }
+    target::check(path, OPTION)?;
+    Ok(())
+}
+
+/// Measures, with a bar.
+fn measure(args: &ChartArgs, scene: &Scene, report: Report) -> anyhow::Result<Chart> {
+    const STEPS: f64 = 100.0;
+    let bar = report.bar(STEPS as u64, "", "%");
+    let progress = |what: &'static str, share: f64| {
+        bar.set_message(what);
+        bar.set_position((share * STEPS) as u64);
+    };
+    let effort = if args.quick {
+        Effort::Quick
+    } else {
+        Effort::Full
+    };
+    let name = args.scene.file_stem().unwrap_or(args.scene.as_os_str());
+    let name = name.to_string_lossy().into_owned();
+    Ok(Chart::measure(scene, name, effort, &progress)?)
+}
