@@ -33,7 +33,7 @@ fn tiles_change_no_pixel_of_the_built_in_scenes() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(128))]
+    #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
     fn tiles_change_no_pixel_of_any_scene(
@@ -43,15 +43,22 @@ proptest! {
         flat in prop_oneof![Just(0.0), Just(1e-9), Just(1.0), Just(1.0)],
         aim in (-6.0..6.0_f64, -6.0..6.0_f64, -6.0..6.0_f64),
         fov_log in -3.0..2.2_f64,
-        outer in 3.5..40.0_f64,
-        outwards in any::<bool>(),
+        // From a thread to a plain.
+        width_log in -6.0..2.5_f64,
+        aimed in 0..4_u8,
     ) {
         let r = libm::exp(log_r);
         let (x, y, z) = (direction.0, direction.1, direction.2 * flat);
         let length = (x * x + y * y + z * z).sqrt();
         prop_assume!(length > 0.1);
         let place = |factor: f64| format!("[{:e}, {:e}, {:e}]", factor * x / length, factor * y / length, factor * z / length);
-        let focus = if outwards { place(3.0 * r) } else { format!("[{}, {}, {}]", aim.0, aim.1, aim.2) };
+        let focus = match aimed {
+            0 => place(3.0 * r),
+            // The photon ring's neighbourhood, through a lens of its own.
+            1 => format!("[{}, {}, {}]", 2.6 * -y / length, 2.6 * x / length, 0.1 * aim.2),
+            _ => format!("[{}, {}, {}]", aim.0, aim.1, aim.2),
+        };
+        let outer = 3.0 + libm::exp(width_log * core::f64::consts::LN_10);
         let text = format!(
             "[camera]\nposition = {}\nfocus = {focus}\nup = [0.1, 0.2, 1.0]\nfov = {}\n[disk]\ninner = 3.0\nouter = {outer}\n[image]\nwidth = 150\nheight = 90\n",
             place(r),

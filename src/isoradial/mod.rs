@@ -47,9 +47,9 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 use crate::orbit::path::SweptAngles;
 use nodes::Nodes;
+pub use open::{Open, OpenBand, Uniform};
+pub use patch::{Interval, Line, Patch, Side};
 use piece::{Piece, thickness};
-pub use open::{Open, OpenBand, Patched};
-pub use patch::{Interval, Line, Patch};
 pub use range::{Bundle, Verdict};
 pub use sight::Sight;
 use solve::Target;

@@ -1,6 +1,6 @@
 //! Which curves are open over a patch: neither wholly on one side of it nor on the other.
 
-use super::patch::{Line, Patch};
+use super::patch::{Line, Patch, Side};
 use super::{Edge, Isoradials};
 
 /// The edges that are open over a patch. Those of a patch within it are among them.
@@ -26,15 +26,13 @@ pub struct OpenBand {
     pub outer: Option<Line>,
 }
 
-/// What is known of a patch.
-#[derive(Debug)]
-pub enum Patched {
-    /// All its rays meet the disk.
+/// What all rays of a patch have in common over which no edge is open.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Uniform {
+    /// They meet the disk.
     Hit,
-    /// None does.
+    /// They do not.
     Miss,
-    /// It depends on the ray.
-    Open(Open),
 }
 
 impl Open {
@@ -45,63 +43,79 @@ impl Open {
 }
 
 impl Isoradials {
-    /// What is known of `patch`, `half` so many pixels to either side of its centre; `before` is what was open over a
+    /// What is open over `patch`, `half` so many pixels to either side of its centre; `before` is what was open over a
     /// patch that it is part of.
-    pub fn patched(&self, patch: &Patch, half: (f64, f64), before: Option<&Open>) -> Patched {
-        let before = before.filter(|open| open.quarter == patch.quarter());
+    ///
+    /// # Errors
+    /// What its rays have in common, where nothing is open.
+    pub fn patched(
+        &self,
+        patch: &Patch,
+        half: (f64, f64),
+        before: Option<&Open>,
+    ) -> Result<Open, Uniform> {
         let mut open = Open {
             quarter: patch.quarter(),
             bands: [OpenBand::default(); MOST],
             count: 0,
         };
-        let pieces = self.quarter(patch.quarter());
-        let mut narrow = |piece: usize, inner: bool, outer: bool| {
-            let line = |edge| patch.line(&pieces[piece], edge, self.critical());
-            let mut band = OpenBand {
+        let before = before.filter(|open| open.quarter == patch.quarter());
+        let count = before.map_or(self.quarter(open.quarter).len(), |before| before.count);
+        for i in 0..count {
+            let (piece, asked) = before.map_or((i, [true; 2]), |before| {
+                let band = &before.bands[i];
+                (band.piece, [band.outer.is_some(), band.inner.is_some()])
+            });
+            let band = OpenBand {
                 piece,
                 ..OpenBand::default()
             };
-            if outer {
-                let line = line(Edge::Outer);
-                let (low, high) = line.bounds(half);
-                if high < 0.0 {
-                    return false;
+            match self.narrowed(patch, half, band, asked) {
+                Ok(band) => {
+                    open.bands[open.count] = band;
+                    open.count += 1;
                 }
-                // Not `low < 0`, which would take what is no number for decided.
-                if !(low >= 0.0) {
-                    band.outer = Some(line);
-                }
+                Err(Uniform::Hit) => return Err(Uniform::Hit),
+                Err(Uniform::Miss) => {}
             }
-            if inner {
-                let line = line(Edge::Inner);
-                let (low, high) = line.bounds(half);
-                if low > 0.0 {
-                    return false;
-                }
-                if !(high <= 0.0) {
-                    band.inner = Some(line);
-                }
-            }
-            if band.inner.is_none() && band.outer.is_none() {
-                return true;
-            }
-            open.bands[open.count] = band;
-            open.count += 1;
-            false
-        };
-        let hit = match before {
-            Some(before) => before
-                .bands()
-                .iter()
-                .any(|band| narrow(band.piece, band.inner.is_some(), band.outer.is_some())),
-            None => (0..pieces.len()).any(|piece| narrow(piece, true, true)),
-        };
-        if hit {
-            Patched::Hit
-        } else if open.count == 0 {
-            Patched::Miss
+        }
+        if open.count == 0 {
+            Err(Uniform::Miss)
         } else {
-            Patched::Open(open)
+            Ok(open)
+        }
+    }
+
+    /// The edges of a band that are open, of those asked for: outer, inner.
+    #[inline]
+    fn narrowed(
+        &self,
+        patch: &Patch,
+        half: (f64, f64),
+        mut band: OpenBand,
+        [outer, inner]: [bool; 2],
+    ) -> Result<OpenBand, Uniform> {
+        let piece = &self.quarter(patch.quarter())[band.piece];
+        if outer {
+            let line = patch.line(piece, Edge::Outer, self.critical());
+            match line.side(half) {
+                Some(Side::Below) => return Err(Uniform::Miss),
+                Some(Side::Above) => {}
+                None => band.outer = Some(line),
+            }
+        }
+        if inner {
+            let line = patch.line(piece, Edge::Inner, self.critical());
+            match line.side(half) {
+                Some(Side::Above) => return Err(Uniform::Miss),
+                Some(Side::Below) => {}
+                None => band.inner = Some(line),
+            }
+        }
+        if band.inner.is_none() && band.outer.is_none() {
+            Err(Uniform::Hit)
+        } else {
+            Ok(band)
         }
     }
 }

@@ -54,6 +54,15 @@ pub struct Line {
     pub per_row: Interval,
 }
 
+/// A side of an edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// `g ≥ 0`.
+    Above,
+    /// `g < 0`.
+    Below,
+}
+
 /// The numbers within `radius` of `middle`.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Interval {
@@ -72,13 +81,6 @@ impl Interval {
         Self {
             middle: self.middle * other.middle,
             radius: a * other.radius + self.radius * (b + other.radius),
-        }
-    }
-
-    fn scaled(self, factor: f64) -> Self {
-        Self {
-            middle: self.middle * factor,
-            radius: self.radius * factor.abs(),
         }
     }
 
@@ -232,6 +234,7 @@ impl Patch {
 
 impl Line {
     /// `−g`.
+    #[must_use]
     pub fn opposite(&self) -> Self {
         let opposite = |interval: Interval| Interval {
             middle: -interval.middle,
@@ -244,12 +247,18 @@ impl Line {
         }
     }
 
-    /// Bounds over the patch of `half` so many pixels to either side.
+    /// On which side of the edge the whole patch is, `half` so many pixels to either side of its centre.
     #[inline]
-    pub fn bounds(&self, half: (f64, f64)) -> (f64, f64) {
+    pub fn side(&self, half: (f64, f64)) -> Option<Side> {
         let radius =
             self.value.radius + self.per_column.most() * half.0 + self.per_row.most() * half.1;
-        (self.value.middle - radius, self.value.middle + radius)
+        if self.value.middle - radius >= 0.0 {
+            Some(Side::Above)
+        } else if self.value.middle + radius < 0.0 {
+            Some(Side::Below)
+        } else {
+            None
+        }
     }
 }
 

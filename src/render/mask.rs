@@ -123,11 +123,7 @@ impl<'a> Sample<'a> {
         let ray = self.view.ray_at(x, y);
         let s = ray.transverse();
         // Straight at the hole or away from it: no plane, no disk.
-        if s > 0.0
-            && self
-                .curves
-                .meets(ray.z, s, self.n_p * s, self.n_a * ray.ta)
-        {
+        if s > 0.0 && self.curves.meets(ray.z, s, self.n_p * s, self.n_a * ray.ta) {
             WHITE
         } else {
             0

@@ -6,7 +6,7 @@
 //! a small share of a pixel, each row of pixels is cut at the edges' lines: into pixels that are decided for certain,
 //! and those that are asked one by one.
 
-use crate::isoradial::{Bundle, Isoradials, Line, Open, Patch, Patched, Verdict};
+use crate::isoradial::{Bundle, Isoradials, Line, Open, Patch, Uniform, Verdict};
 use crate::render::mask::WHITE;
 use crate::scene::View;
 
@@ -59,17 +59,11 @@ impl<P: Fn(usize, usize) -> u8> Filler<'_, P> {
             return self.fill_bundle(band, tile, columns, rows);
         };
         match self.curves.patched(&patch, half, before) {
-            Patched::Miss => {}
-            Patched::Hit => band.whiten(tile),
-            Patched::Open(open) => {
-                if self.is_straight(&open, half) {
-                    self.cut(band, tile, &open);
-                } else if tile.width.max(tile.height) <= SMALLEST {
-                    self.ask(band, tile);
-                } else {
-                    self.split(band, tile, Some(&open));
-                }
-            }
+            Err(Uniform::Miss) => {}
+            Err(Uniform::Hit) => band.whiten(tile),
+            Ok(open) if is_straight(&open, half) => self.cut(band, tile, &open),
+            Ok(_) if tile.is_smallest() => self.ask(band, tile),
+            Ok(open) => self.split(band, tile, Some(&open)),
         }
     }
 
@@ -79,7 +73,7 @@ impl<P: Fn(usize, usize) -> u8> Filler<'_, P> {
         match bundle.map_or(Verdict::Mixed, |bundle| self.curves.verdict(&bundle)) {
             Verdict::Miss => {}
             Verdict::Hit => band.whiten(tile),
-            Verdict::Mixed if tile.width.max(tile.height) <= SMALLEST => self.ask(band, tile),
+            Verdict::Mixed if tile.is_smallest() => self.ask(band, tile),
             Verdict::Mixed => self.split(band, tile, None),
         }
     }
@@ -99,21 +93,6 @@ impl<P: Fn(usize, usize) -> u8> Filler<'_, P> {
                 self.fill(band, part, open);
             }
         }
-    }
-
-    /// Whether every open edge is nearly a straight line over its tile.
-    fn is_straight(&self, open: &Open, half: (f64, f64)) -> bool {
-        let straight = |line: &Line| {
-            let bend = line.per_column.radius * half.0 + line.per_row.radius * half.1;
-            // The gradient's larger part is its length, but for a factor of √2.
-            let gradient = line.per_column.middle.abs().max(line.per_row.middle.abs());
-            bend <= STRAIGHT * gradient
-        };
-        open.bands()
-            .iter()
-            .flat_map(|band| [&band.inner, &band.outer])
-            .flatten()
-            .all(straight)
     }
 
     /// Cuts each row of a tile at its open edges.
@@ -140,9 +119,9 @@ impl<P: Fn(usize, usize) -> u8> Filler<'_, P> {
                 *possible = perhaps;
             }
             for &(from, to) in &possible[..open.bands().len()] {
-                for i in from..to {
-                    if row[i] != WHITE {
-                        row[i] = (self.pixel)(tile.left + i, y);
+                for (i, pixel) in row.iter_mut().enumerate().take(to).skip(from) {
+                    if *pixel != WHITE {
+                        *pixel = (self.pixel)(tile.left + i, y);
                     }
                 }
             }
@@ -158,6 +137,27 @@ impl<P: Fn(usize, usize) -> u8> Filler<'_, P> {
                 *pixel = (self.pixel)(tile.left + i, y);
             }
         }
+    }
+}
+
+/// Whether every open edge is nearly a straight line over its tile.
+fn is_straight(open: &Open, half: (f64, f64)) -> bool {
+    let straight = |line: &Line| {
+        let bend = line.per_column.radius * half.0 + line.per_row.radius * half.1;
+        // The gradient's larger part is its length, but for a factor of √2.
+        let gradient = line.per_column.middle.abs().max(line.per_row.middle.abs());
+        bend <= STRAIGHT * gradient
+    };
+    open.bands()
+        .iter()
+        .flat_map(|band| [&band.inner, &band.outer])
+        .flatten()
+        .all(straight)
+}
+
+impl Tile {
+    fn is_smallest(self) -> bool {
+        self.width.max(self.height) <= SMALLEST
     }
 }
 
@@ -213,10 +213,12 @@ impl Cut {
         certain: &mut (usize, usize),
         perhaps: &mut (usize, usize),
     ) {
+        /// The pixel, as a real number, at which a bound is 0 is moved by rounding by far less than this.
+        const ROUNDING: f64 = 1e-6;
         // g ≥ slope dx + value − doubt at dx = i + ½ − half.
         let (certainly, maybe) = (self.value - self.doubt, self.value + self.doubt);
         if self.slope == 0.0 {
-            if !(certainly >= 0.0) {
+            if certainly < 0.0 {
                 *certain = (0, 0);
             }
             if maybe < 0.0 {
@@ -225,8 +227,6 @@ impl Cut {
             return;
         }
         let inverse = 1.0 / self.slope;
-        // The pixel, as a real number, at which each bound is 0; rounding moves it by far less than this.
-        const ROUNDING: f64 = 1e-6;
         let (at_certain, at_maybe) = (
             self.half - 0.5 - certainly * inverse,
             self.half - 0.5 - maybe * inverse,

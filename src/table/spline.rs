@@ -188,12 +188,15 @@ pub(crate) fn jet(coefficients: &[f64], axis: Scale, x: f64, reach: f64) -> (f64
         first,
         weights: weights(f),
     };
-    let slope = (f * f * c[3] - g * g * c[0]) + (g * (4.0 - 3.0 * g) * c[2] - f * (4.0 - 3.0 * f) * c[1]);
+    let slope =
+        (f * f * c[3] - g * g * c[0]) + (g * (4.0 - 3.0 * g) * c[2] - f * (4.0 - 3.0 * f) * c[1]);
     let cells = reach * axis.per_unit;
     let (low, high) = (axis.cell(t - cells) as usize, axis.cell(t + cells) as usize);
     let bend = coefficients[low..high + 4]
         .windows(3)
-        .fold(0.0, |bend: f64, c| bend.max((c[0] - 2.0 * c[1] + c[2]).abs()));
+        .fold(0.0, |bend: f64, c| {
+            bend.max((c[0] - 2.0 * c[1] + c[2]).abs())
+        });
     (
         value(coefficients, &stencil),
         3.0 * slope * axis.per_unit,
@@ -358,11 +361,17 @@ mod tests {
             let (height, slope, bend) = jet(&c, axis, x, 0.07);
             assert_eq!(height, at(x));
             let (before, after) = (at(x - 1e-4), at(x + 1e-4));
-            assert!((slope - (after - before) / 2e-4).abs() < 1e-6, "{slope} at {x}");
+            assert!(
+                (slope - (after - before) / 2e-4).abs() < 1e-6,
+                "{slope} at {x}"
+            );
             for j in -7..=7 {
                 let y = x + f64::from(j) * 0.0099;
                 let second = (at(y - 1e-3) - 2.0 * at(y) + at(y + 1e-3)) / 1e-6;
-                assert!(second.abs() <= bend * (1.0 + 1e-6) + 1e-6, "{second} over {bend} at {y}");
+                assert!(
+                    second.abs() <= bend * (1.0 + 1e-6) + 1e-6,
+                    "{second} over {bend} at {y}"
+                );
             }
         }
     }
