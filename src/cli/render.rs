@@ -15,7 +15,7 @@ use crate::orbit::Orbits;
 use crate::orbit::exact::Exact;
 use crate::orbit::path::SweptAngles;
 use crate::render::needs::Needs;
-use crate::render::{RenderError, mask, pixelwise};
+use crate::render::{RenderError, coverage, mask, pixelwise};
 use crate::scene::{DEFAULT_SCENE, Scene, View};
 
 /// Render a scene as a PNG picture
@@ -37,6 +37,10 @@ pub(super) struct RenderArgs {
     /// What an edge may be off by, in pixels, above 0 and at most 1, in place of the scene's
     #[arg(long, value_name = "PIXELS", allow_negative_numbers = true)]
     tolerance: Option<f64>,
+    /// Smooth edges: each pixel is the share of its square that the disk covers; with false, what its centre sees. In
+    /// place of the scene's; the methods that follow single rays know hard edges only
+    #[arg(long, value_name = "true|false", action = clap::ArgAction::Set)]
+    antialias: Option<bool>,
     /// Tell what the picture needs and what it does not, and draw nothing
     #[arg(long, conflicts_with = "output")]
     explain: bool,
@@ -89,6 +93,7 @@ fn scene(args: &RenderArgs) -> anyhow::Result<Scene> {
     for (given, flag) in [
         (args.tolerance.is_some(), "tolerance"),
         (args.explain, "explain"),
+        (args.antialias == Some(true), "antialias"),
     ] {
         if given && !args.method.is_table() {
             return Err(Misuse::CurvesUnused { flag }.into());
@@ -103,6 +108,9 @@ fn scene(args: &RenderArgs) -> anyhow::Result<Scene> {
                 height,
                 source,
             })?;
+    }
+    if let Some(antialias) = args.antialias {
+        scene = scene.with_antialias(antialias);
     }
     if let Some(pixels) = args.tolerance {
         scene = scene.with_tolerance(pixels).map_err(Misuse::Tolerance)?;
@@ -137,14 +145,18 @@ fn by_curves(
     let (error, allowed) = (curves.error(), scene.tolerance());
     if is_unresolved(error, allowed) {
         report.note(format_args!(
-            "the isoradial curves of this view are only right to {:.1e} pixels, so every pixel's ray is followed by itself, which takes a hundred times as long",
+            "the isoradial curves of this view are only right to {:.1e} pixels, so every pixel's ray is followed by itself, which takes a hundred times as long and leaves hard edges",
             error.total()
         ));
         warn_of(error.angles + error.rounding, error, needs, report);
         return ray_by_ray(scene, view, angles, report);
     }
     warn_of(error.total(), error, needs, report);
-    mask::render(view, &curves)
+    if scene.antialias() {
+        coverage::render(view, &curves)
+    } else {
+        mask::render(view, &curves)
+    }
 }
 
 /// Says what an edge may be off by where that is more than was asked for, and what would help.
