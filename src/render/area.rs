@@ -38,13 +38,13 @@ pub(super) fn share_of_union(bands: &[OpenBand], side: f64) -> f64 {
             let inner = band.inner.map_or(0.0, |line| share_above(&line, side));
             outer + inner
         }
-        _ => off(Polygon::square(side), bands) / (side * side),
+        _ => off(&Polygon::square(side), bands) / (side * side),
     };
     (1.0 - off).max(0.0)
 }
 
 /// The area of a polygon that lies off all bands.
-fn off(polygon: Polygon, bands: &[OpenBand]) -> f64 {
+fn off(polygon: &Polygon, bands: &[OpenBand]) -> f64 {
     let Some((band, others)) = bands.split_first() else {
         return polygon.area();
     };
@@ -53,7 +53,7 @@ fn off(polygon: Polygon, bands: &[OpenBand]) -> f64 {
         if part.count == 0 {
             0.0
         } else {
-            off(part, others)
+            off(&part, others)
         }
     };
     band.outer.map_or(0.0, |line| beyond(line.opposite())) + band.inner.map_or(0.0, beyond)
@@ -162,6 +162,7 @@ mod tests {
     /// Two and three bands against counting the points of a fine grid.
     #[test]
     fn unions_are_what_a_grid_counts() {
+        const SIDE: u32 = 200;
         let lines = lines();
         let mut state = 1_u64;
         for count in [1, 2, 3] {
@@ -191,7 +192,6 @@ mod tests {
                             && band.inner.is_none_or(|line| g(&line, x, y) <= 0.0)
                     })
                 };
-                const SIDE: u32 = 200;
                 let place = |i: u32| (f64::from(i) + 0.5) / f64::from(SIDE) - 0.5;
                 let hits = (0..SIDE * SIDE)
                     .filter(|k| inside(place(k % SIDE), place(k / SIDE)))
