@@ -100,6 +100,47 @@ impl Patch {
         columns: (f64, f64),
         rows: (f64, f64),
     ) -> Option<Self> {
+        Self::of(view, curves, columns, rows, None)
+    }
+
+    /// The same of those rays of a rectangle that meet the plane in one of the quarter turns, 0 or 1; with the curves
+    /// continued a little beyond it. None too where that is no little way, close to the disk's plane.
+    pub fn in_quarter(
+        view: &View,
+        curves: &Isoradials,
+        columns: (f64, f64),
+        rows: (f64, f64),
+        quarter: usize,
+    ) -> Option<Self> {
+        Self::of(view, curves, columns, rows, Some(quarter))
+    }
+
+    /// Where in a rectangle the rays meet the plane at a quarter turn, D = 0: positive in the first one.
+    pub fn border(view: &View, columns: (f64, f64), rows: (f64, f64)) -> Line {
+        let (x, y) = (
+            view.x_at(0.5 * (columns.0 + columns.1)),
+            view.y_at(0.5 * (rows.0 + rows.1)),
+        );
+        let exactly = |middle| Interval {
+            middle,
+            radius: 0.0,
+        };
+        let (d, pixel) = (view.plane_slope(), view.pixel_side());
+        Line {
+            value: exactly(d * view.ta().at(x, y)),
+            per_column: exactly(d * view.ta().per_x * pixel),
+            per_row: exactly(-d * view.ta().per_y * pixel),
+        }
+    }
+
+    #[inline]
+    fn of(
+        view: &View,
+        curves: &Isoradials,
+        columns: (f64, f64),
+        rows: (f64, f64),
+        wanted: Option<usize>,
+    ) -> Option<Self> {
         let (z, ta, tb) = (view.z(), view.ta(), view.tb());
         let (x, y) = (
             view.x_at(0.5 * (columns.0 + columns.1)),
@@ -131,25 +172,26 @@ impl Patch {
             },
         );
         let (n, d) = (view.n_p().abs(), view.plane_slope());
-        // |D|/s, and how far it is from 0.
-        let size = (d * ca.middle).abs();
+        // |D|/s, less than 0 beyond the quarter turn's end.
+        let quarter = wanted.unwrap_or(usize::from(d * ca.middle < 0.0));
+        let size = d * if quarter == 0 { ca.middle } else { -ca.middle };
         let least = size - d.abs() * spread;
-        if least <= 0.0 && d != 0.0 {
+        let near = match wanted {
+            None if least <= 0.0 && d != 0.0 => return None,
+            None => n + least.max(0.0),
+            // In the plane x is 0 or 1 all over the quarter turn.
+            Some(_) if n == 0.0 => d.abs(),
+            Some(_) => n + least,
+        };
+        if near <= 0.5 * n || near == 0.0 {
             return None;
         }
-        let quarter = usize::from(d * ca.middle < 0.0);
-        let (near, middle, far) = (
-            n + least.max(0.0),
-            n + size,
-            n + (size + d.abs() * spread).min(d.abs()),
-        );
-        if near <= 0.0 {
-            return None;
-        }
+        let far = n + (size + d.abs() * spread).min(d.abs());
+        let middle = if n == 0.0 { size.abs() } else { n + size };
         let share = if quarter == 0 {
             n / middle
         } else {
-            size / middle
+            1.0 - n / middle
         };
         // N D₁/(N + |D|)² between its ends; x changes by it times the change of c_a.
         let factor = n * d;

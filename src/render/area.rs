@@ -43,6 +43,18 @@ pub(super) fn share_of_union(bands: &[OpenBand], side: f64) -> f64 {
     (1.0 - off).max(0.0)
 }
 
+/// The share of a square of so many pixels' side that is on the positive side of `border` and in any of the bands; with
+/// no band, in all of it.
+pub(super) fn share_beside(border: &Line, bands: &[OpenBand], side: f64) -> f64 {
+    let part = Polygon::square(side).above(border);
+    let off = if bands.is_empty() {
+        0.0
+    } else {
+        off(&part, bands)
+    };
+    ((part.area() - off) / (side * side)).max(0.0)
+}
+
 /// The area of a polygon that lies off all bands.
 fn off(polygon: &Polygon, bands: &[OpenBand]) -> f64 {
     let Some((band, others)) = bands.split_first() else {

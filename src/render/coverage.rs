@@ -7,9 +7,9 @@
 //! orders' bands: where edges of several orders share a pixel its square is clipped at all of them.
 //!
 //! A pixel over which an edge bends, where the whole ring is some pixels across, is cut into four, and those again
-//! where they must be: so are pixels that meet the disk's plane in both quarter turns, or look at the hole.
+//! where they must be: so are pixels that look at the hole.
 
-use super::area::share_of_union;
+use super::area::{share_beside, share_of_union};
 use super::tiles::{Filler, fill_frame, is_straight};
 use super::{RenderError, blank};
 use crate::isoradial::{Isoradials, Open, Patch, Uniform};
@@ -83,7 +83,9 @@ impl Shares<'_> {
     fn share(&self, columns: (f64, f64), rows: (f64, f64), open: Option<&Open>, cuts: u32) -> f64 {
         let side = columns.1 - columns.0;
         let Some(patch) = Patch::new(self.view, self.curves, columns, rows) else {
-            return if cuts == 0 {
+            return if let Some(share) = self.share_of_both(columns, rows) {
+                share
+            } else if cuts == 0 {
                 let middle = |(from, to): (f64, f64)| 0.5 * (from + to);
                 f64::from(super::mask::sees(
                     self.view,
@@ -103,6 +105,27 @@ impl Shares<'_> {
             }
             Ok(open) => self.quarters(columns, rows, Some(&open), cuts),
         }
+    }
+
+    /// The share of a rectangle whose rays meet the plane in both quarter turns, which a straight line divides; if its
+    /// edges are straight.
+    fn share_of_both(&self, columns: (f64, f64), rows: (f64, f64)) -> Option<f64> {
+        let side = columns.1 - columns.0;
+        let half = (0.5 * side, 0.5 * side);
+        let border = Patch::border(self.view, columns, rows);
+        let mut share = 0.0;
+        for (quarter, border) in [border, border.opposite()].into_iter().enumerate() {
+            let patch = Patch::in_quarter(self.view, self.curves, columns, rows, quarter)?;
+            share += match self.curves.patched(&patch, half, None) {
+                Err(Uniform::Hit) => share_beside(&border, &[], side),
+                Err(Uniform::Miss) => 0.0,
+                Ok(open) if is_straight(&open, half, STRAIGHT * side) => {
+                    share_beside(&border, open.bands(), side)
+                }
+                Ok(_) => return None,
+            };
+        }
+        Some(share.min(1.0))
     }
 
     /// The share of a rectangle, from its four quarters'.
