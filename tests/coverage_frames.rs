@@ -48,7 +48,7 @@ fn tiles_change_no_pixel_of_the_built_in_scenes() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 1200, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 12000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn tiles_change_no_pixel_of_any_scene((kind, scene) in any_scene(), wide in 1..4_u32) {
