@@ -263,9 +263,9 @@ impl Line {
 }
 
 impl Piece {
-    /// h at x, and h′ within `reach` of x; the radius of h is that of the whole way.
+    /// h and h′ within `reach` of x.
     #[inline]
-    fn height_and_slope(&self, edge: Edge, x: f64, reach: f64) -> (Interval, Interval) {
+    pub(super) fn height_and_slope(&self, edge: Edge, x: f64, reach: f64) -> (Interval, Interval) {
         let (value, slope, bend) = self.jet(edge, x, reach);
         let slope = Interval {
             middle: slope,
@@ -296,6 +296,12 @@ impl Piece {
             middle: slope.middle - height.middle,
             radius: slope.radius + height.radius,
         };
-        (height, rise.times(inverse))
+        let slope = rise.times(inverse);
+        // By the mean value theorem, where the quotient of the two intervals forgets what f and x have in common.
+        let height = Interval {
+            middle: height.middle,
+            radius: height.radius.min(slope.most() * reach),
+        };
+        (height, slope)
     }
 }

@@ -47,6 +47,7 @@ pub fn render_into(
         view,
         curves,
         reach: 0.5,
+        straight: 0.4,
         pixel: |column: usize, row: usize, open: Option<&Open>| shares.value(column, row, open),
     };
     fill_frame(&filler, pixels, stride)

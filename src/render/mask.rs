@@ -34,6 +34,7 @@ pub fn render_into(
         view,
         curves,
         reach: 0.0,
+        straight: 1.2,
         pixel: |column: usize, row: usize, _: Option<&Open>| value(view, curves, column, row),
     };
     fill_frame(&filler, pixels, stride)

@@ -19,9 +19,6 @@ const TILE: usize = 64;
 /// The side of the smallest tiles.
 const SMALLEST: usize = 4;
 
-/// A tile is cut into rows where what is not linear of its edges is below this, in pixels.
-const STRAIGHT: f64 = 1.2;
-
 /// A band of a frame's rows.
 struct Band<'a> {
     /// Their pixels.
@@ -47,6 +44,9 @@ pub(super) struct Filler<'a, P> {
     pub(super) curves: &'a Isoradials,
     /// How far from its centre a pixel looks to either side, in pixels: 0 for what its centre sees.
     pub(super) reach: f64,
+    /// A tile is cut into rows where what is not linear of its edges is below this, in pixels: a compromise between
+    /// tiles and pixels to be asked.
+    pub(super) straight: f64,
     /// The value of the pixel (column, row) of the frame; the edges given are all that are open over it, and some
     /// more.
     pub(super) pixel: P,
@@ -109,7 +109,7 @@ impl<P: Fn(usize, usize, Option<&Open>) -> u8> Filler<'_, P> {
         match self.curves.patched(&patch, half, before) {
             Err(Uniform::Miss) => {}
             Err(Uniform::Hit) => band.whiten(tile),
-            Ok(open) if is_straight(&open, half, STRAIGHT) => self.cut(band, tile, &open),
+            Ok(open) if is_straight(&open, half, self.straight) => self.cut(band, tile, &open),
             Ok(open) if tile.is_smallest() => self.ask(band, tile, Some(&open)),
             Ok(open) => self.split(band, tile, Some(&open)),
         }
