@@ -305,3 +305,97 @@ impl Piece {
         (height, slope)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::isoradial::{Sight, place};
+    use crate::orbit::exact::Exact;
+    use crate::scene::{Scene, builtins};
+
+    /// g of an edge at a place of the picture, as [`Isoradials::meets`] has it.
+    fn g(view: &View, curves: &Isoradials, piece: &Piece, edge: Edge, at: (f64, f64)) -> f64 {
+        let ray = view.ray_at(view.x_at(at.0), view.y_at(at.1));
+        let s = ray.transverse();
+        let x = place(view.n_p().abs() * s, view.plane_slope() * ray.ta);
+        ray.z - curves.critical() * s - s * piece.height(edge, x)
+    }
+
+    /// Every edge of every order over rectangles of all sizes and places: g is within the line's bounds, which are
+    /// nowhere so wide that they would say nothing.
+    #[test]
+    fn lines_hold_the_edges() {
+        let mut state = 1_u64;
+        let mut random = |range: f64| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            range * ((state >> 11) as f64 / (1_u64 << 53) as f64)
+        };
+        for builtin in builtins() {
+            let scene = Scene::builtin(builtin.name()).unwrap();
+            let view = View::new(&scene);
+            let curves = Isoradials::new(&Sight::new(&scene, &view, 1e-3), &Exact);
+            let (width, height) = (f64::from(view.width()), f64::from(view.height()));
+            let mut looked_at = 0;
+            for _ in 0..3000 {
+                let side = libm::exp2(random(6.0));
+                let (left, top) = (random(width - side), random(height - side));
+                let (columns, rows) = ((left, left + side), (top, top + side));
+                let Some(patch) = Patch::new(&view, &curves, columns, rows) else {
+                    continue;
+                };
+                for piece in curves.quarter(patch.quarter()) {
+                    for edge in [Edge::Inner, Edge::Outer] {
+                        let line = patch.line(piece, edge, curves.critical());
+                        for _ in 0..4 {
+                            let (dx, dy) = (random(side) - 0.5 * side, random(side) - 0.5 * side);
+                            let at = (left + 0.5 * side + dx, top + 0.5 * side + dy);
+                            let truth = g(&view, &curves, piece, edge, at);
+                            let middle = line.value.middle
+                                + line.per_column.middle * dx
+                                + line.per_row.middle * dy;
+                            let radius = line.value.radius
+                                + line.per_column.radius * dx.abs()
+                                + line.per_row.radius * dy.abs();
+                            assert!(
+                                (truth - middle).abs() <= radius
+                                    || truth == middle
+                                    || radius.is_nan(),
+                                "{}: {truth} at {at:?}, not {middle} ± {radius}: {line:?}",
+                                builtin.name()
+                            );
+                            looked_at += usize::from(radius.is_finite() && truth.is_finite());
+                        }
+                    }
+                }
+            }
+            assert!(looked_at > 10_000, "{}: {looked_at}", builtin.name());
+        }
+    }
+
+    /// The part that is not linear falls with the square of the side.
+    #[test]
+    fn what_is_not_linear_falls_with_the_square() {
+        let scene = Scene::builtin("classic").unwrap();
+        let view = View::new(&scene);
+        let curves = Isoradials::new(&Sight::new(&scene, &view, 1e-3), &Exact);
+        let bend = |side: f64| {
+            let patch = Patch::new(
+                &view,
+                &curves,
+                (1500.0, 1500.0 + side),
+                (400.0, 400.0 + side),
+            );
+            let patch = patch.unwrap();
+            let line = patch.line(
+                &curves.quarter(patch.quarter())[0],
+                Edge::Outer,
+                curves.critical(),
+            );
+            (line.per_column.radius + line.per_row.radius) * 0.5 * side
+        };
+        let ratio = bend(16.0) / bend(8.0);
+        assert!((3.5..4.6).contains(&ratio), "{ratio}");
+    }
+}

@@ -15,6 +15,9 @@ use super::{RenderError, blank};
 use crate::isoradial::{Bundle, Isoradials, Open, Patch, Uniform, Verdict};
 use crate::scene::View;
 
+/// What is not linear of the edges over a tile, in pixels, below which it is cut into rows: measured as the cheapest.
+pub(super) const STRAIGHT_TILE: f64 = 0.4;
+
 /// What is not linear of an edge over a pixel, in pixels, beyond which the pixel is cut up.
 const STRAIGHT: f64 = 0.25;
 
@@ -47,7 +50,7 @@ pub fn render_into(
         view,
         curves,
         reach: 0.5,
-        straight: 0.4,
+        straight: STRAIGHT_TILE,
         pixel: |column: usize, row: usize, open: Option<&Open>| shares.value(column, row, open),
     };
     fill_frame(&filler, pixels, stride)

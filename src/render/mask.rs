@@ -6,6 +6,9 @@ use super::{RenderError, blank, each_pixel};
 use crate::isoradial::{Isoradials, Open};
 use crate::scene::View;
 
+/// What is not linear of the edges over a tile, in pixels, below which it is cut into rows: measured as the cheapest.
+pub(super) const STRAIGHT_TILE: f64 = 1.2;
+
 /// White: the disk.
 pub const WHITE: u8 = 255;
 
@@ -34,7 +37,7 @@ pub fn render_into(
         view,
         curves,
         reach: 0.0,
-        straight: 1.2,
+        straight: STRAIGHT_TILE,
         pixel: |column: usize, row: usize, _: Option<&Open>| value(view, curves, column, row),
     };
     fill_frame(&filler, pixels, stride)

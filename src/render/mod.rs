@@ -9,6 +9,8 @@ pub mod pixelwise;
 pub mod png;
 mod tiles;
 
+pub use tiles::cull;
+
 use rayon::prelude::*;
 
 use crate::orbit::OrbitError;

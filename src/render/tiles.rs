@@ -96,6 +96,32 @@ pub(super) fn fill_frame<P: Fn(usize, usize, Option<&Open>) -> u8 + Sync>(
     Ok(())
 }
 
+/// Finds and fills the tiles that are all alike, and leaves the pixels along the disk's edges as they come: what of a
+/// frame's time is spent on finding its edges. `smooth` as [`coverage`](super::coverage) does it, or as
+/// [`mask`](super::mask) does.
+///
+/// # Errors
+/// [`RenderError::Buffer`] for a buffer that the frame does not fit.
+pub fn cull(
+    view: &View,
+    curves: &Isoradials,
+    smooth: bool,
+    pixels: &mut [u8],
+) -> Result<(), RenderError> {
+    let filler = Filler {
+        view,
+        curves,
+        reach: if smooth { 0.5 } else { 0.0 },
+        straight: if smooth {
+            super::coverage::STRAIGHT_TILE
+        } else {
+            super::mask::STRAIGHT_TILE
+        },
+        pixel: |_: usize, _: usize, _: Option<&Open>| 0,
+    };
+    fill_frame(&filler, pixels, view.width() as usize)
+}
+
 impl<P: Fn(usize, usize, Option<&Open>) -> u8> Filler<'_, P> {
     /// Fills a tile of a band, all of whose pixels are black.
     fn fill(&self, band: &mut Band<'_>, tile: Tile, before: Option<&Open>) {
