@@ -49,7 +49,7 @@ pub(crate) fn any_scene() -> impl Strategy<Value = (Kind, Scene)> {
 
 /// A number between two, evenly in its logarithm.
 fn log(share: f64, from: f64, to: f64) -> f64 {
-    from * (to / from).powf(share)
+    from * libm::pow(to / from, share)
 }
 
 fn made(kind: Kind, ([a, b, c, d], [e, f, g, h], (width, height)): Numbers) -> Option<Scene> {

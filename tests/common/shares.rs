@@ -31,6 +31,9 @@ pub(crate) const LEVEL: f64 = 1.0 / 255.0;
 /// 2^DEEPEST`.
 const DEEPEST: u32 = 34;
 
+/// So many parts of a stretch that is far too long for one.
+const PARTS: u32 = 8;
+
 /// A scene's view and curves.
 pub(crate) struct Picture {
     pub(crate) view: View,
@@ -272,14 +275,14 @@ impl Picture {
         let [a, middle, b] = points;
         let along = [b[0] - a[0], b[1] - a[1]];
         let away = [middle[0] - a[0], middle[1] - a[1]];
-        let length = along[0].hypot(along[1]);
+        let length = libm::hypot(along[0], along[1]);
         let off = if length > 0.0 {
             (along[0] * away[1] - along[1] * away[0]).abs() / length
         } else {
-            away[0].hypot(away[1])
+            libm::hypot(away[0], away[1])
         };
         // An edge that is on the whole less bent has its middle within its chord.
-        off <= SAGITTA && away[0].hypot(away[1]) <= length + SAGITTA
+        off <= SAGITTA && libm::hypot(away[0], away[1]) <= length + SAGITTA
     }
 
     /// A direction's column and row.
@@ -300,7 +303,6 @@ impl Picture {
             let [a, b] = stretches;
             return self.cover(&[a[0], a[1], b[1], b[0]].map(|end| end.place), shares);
         }
-        const PARTS: u32 = 8;
         let at = |side: usize, part: u32| {
             let [outer, inner] = stretches[side].map(|end| end.psi);
             let psi = outer + (inner - outer) * f64::from(part) / f64::from(PARTS);
@@ -337,13 +339,13 @@ impl Picture {
         }
     }
 
-    /// The share of a pixel: counted on a lattice of `n` points, n being the number of order `k` of Fibonacci's.
+    /// The share of a pixel, counted.
     pub(crate) fn counted(&self, column: usize, row: usize, lattice: Lattice) -> f64 {
         let hits = lattice
             .points()
             .filter(|(x, y)| self.meets(column as f64 + x, row as f64 + y))
             .count();
-        hits as f64 / lattice.count as f64
+        hits as f64 / f64::from(lattice.count)
     }
 
     /// The shares of all pixels, counted.
