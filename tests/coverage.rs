@@ -174,7 +174,7 @@ fn random_scenes() {
 /// length l ≤ √2, if it is in the middle of the pixel.
 #[test]
 fn circles_are_as_wrong_as_their_tangents_are() {
-    for step in 0..28 {
+    for step in 0..21 {
         let shadow = 0.4 * libm::pow(1.25, f64::from(step));
         // From 40 radii the shadow's edge is at tan ψ = 0.0645.
         let fov = 2.0 * libm::atan(0.0645 * 30.5 / shadow).to_degrees();

@@ -47,6 +47,24 @@ fn tiles_change_no_pixel_of_the_built_in_scenes() {
     }
 }
 
+/// Guards against greys a pixel or more from anything that is seen, where an edge bends so much within a pixel that its
+/// tangents miss it by pixels: through a wide lens, all of the disk is half a pixel, and seen from within its plane.
+#[test]
+fn tangents_show_nothing_where_a_tile_does_not() {
+    let text = "[camera]\nposition = [99.99999987854646, 0.0, -0.004928560257966286]\n\
+                focus = [0.014648543438582351, 0.0, 1.7066550325120646]\nup = [0.0, 0.2, 1.0]\nfov = 160.0\n\
+                [disk]\ninner = 3.0\nouter = 12.0\n[image]\nwidth = 33\nheight = 59\n";
+    let picture = picture(&Scene::from_toml(text).unwrap());
+    let single = coverage::render_every_pixel(&picture.view, &picture.curves).unwrap();
+    let lit: Vec<usize> = (0..single.len()).filter(|&k| single[k] > 0).collect();
+    assert_eq!(
+        lit,
+        [29 * 33 + 16],
+        "the pixel in the direction of the hole"
+    );
+    assert!(smooth(&picture) == single);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, ..ProptestConfig::default() })]
 
