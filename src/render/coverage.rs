@@ -12,7 +12,7 @@
 use super::area::{share_beside, share_of_union};
 use super::tiles::{Filler, fill_frame, is_straight};
 use super::{RenderError, blank};
-use crate::isoradial::{Isoradials, Open, Patch, Uniform};
+use crate::isoradial::{Bundle, Isoradials, Open, Patch, Uniform, Verdict};
 use crate::scene::View;
 
 /// What is not linear of the edges over a tile, in pixels, below which it is cut into rows: measured as the cheapest.
@@ -100,8 +100,17 @@ impl Shares<'_> {
         match self.curves.patched(&patch, half, open) {
             Err(Uniform::Hit) => 1.0,
             Err(Uniform::Miss) => 0.0,
-            Ok(open) if cuts == 0 || is_straight(&open, half, STRAIGHT * side) => {
+            Ok(open) if is_straight(&open, half, STRAIGHT * side) => {
                 share_of_union(open.bands(), side)
+            }
+            // Edges that bend this much may be far from their tangents, and show where no tile lets them.
+            Ok(open) if cuts == 0 => {
+                let bundle = Bundle::new(self.view, columns, rows);
+                match bundle.map_or(Verdict::Mixed, |bundle| self.curves.verdict(&bundle)) {
+                    Verdict::Hit => 1.0,
+                    Verdict::Miss => 0.0,
+                    Verdict::Mixed => share_of_union(open.bands(), side),
+                }
             }
             Ok(open) => self.quarters(columns, rows, Some(&open), cuts),
         }
