@@ -35,9 +35,11 @@
 //! [`Isoradials::error`] tells what has come of it, each part for itself; `tests/needs.rs` checks it against exact
 //! edges, and that choices made for 8 T break T.
 
+mod interval;
 mod nodes;
 mod open;
 mod patch;
+mod picture;
 mod piece;
 mod range;
 mod sight;
@@ -46,9 +48,11 @@ mod solve;
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use crate::orbit::path::SweptAngles;
+pub use interval::Interval;
 use nodes::Nodes;
-pub use open::{Open, OpenBand, Uniform};
-pub use patch::{Interval, Line, Patch, Side};
+pub use open::{Band, Bands, Open, OpenEdge, OpenEdges, Uniform};
+pub use patch::{Bent, Patch, Side};
+pub use picture::{Line, Picture, Spot};
 use piece::{Piece, thickness};
 pub use range::{Bundle, Verdict};
 pub use sight::Sight;

@@ -1,57 +1,67 @@
-//! Curves over a small rectangle of the picture: linear in its pixels, with a bound on what is not.
+//! Curves over a small rectangle of the picture: quadratic in its pixels, with a bound on what is not.
 //!
 //! # Derivation
-//! A ray is on an edge's curve where `g = z − κ s = 0`, `κ = κ_c + h(x)`; g > 0 on the curve's side of the hole. z and
-//! the transverse parts `t_a`, `t_b` are affine in the picture's coordinates; with `(c_a, c_b) = (t_a, t_b)/s` and a
-//! derivative along either coordinate written `∂`,
+//! `g = z − s K(θ)`, see [the page before](super::picture). z has no second derivative, and s K(θ), of the first degree
+//! in `(t_a, t_b)`, has one in one direction only, across the line to the hole: `(K + K_θθ)/s`. Along the way
+//! `p₀ + τ d`, τ from 0 to 1, from the rectangle's centre to another of its places, `s² ∂θ = p₀ × d` stays the same
+//! while `1/s³` does not, so that by Taylor's theorem with the remainder as an integral
 //!
 //! ```text
-//! ∂s = c_a ∂t_a + c_b ∂t_b
-//! ∂c_a = c_b (c_b ∂t_a − c_a ∂t_b)/s
-//! ∂x = −|n_p| D₁/(|n_p| + |D₁ c_a|)² ∂c_a          N = |n_p| s, D = D₁ c_a s
-//! ∂g = ∂z − κ ∂s − s h′ ∂x
+//! g(d) = g₀ + ∂g·d − ∫₀¹ (1 − τ) B(τ) dτ (s∂θ·d)²          B = (K + K_θθ) s₀²/s³
 //! ```
 //!
-//! In the third line both quarter turns are alike: `x = N/(N + D)` and `|D|/(N + |D|)`. Over a rectangle whose t lie
-//! within ρ of the one at its centre, `c_a` and `c_b` are within `ρ/(s − ρ)` of theirs; the rest follows by adding and
-//! multiplying intervals, each its middle and its radius. By the mean value theorem g is then its value at the centre
-//! plus the gradient's interval times the way from there: an interval whose width beyond the linear part falls with
-//! the square of the rectangle's size (Moore, Kearfott & Cloud 2009, *Introduction to Interval Analysis*, §6.4).
+//! s∂θ being that of the centre. If `B` is within ρ of β all over the rectangle, then g is its quadratic part with β/2 in
+//! the integral's place, and what is left is less than `ρ/2 (s∂θ·d)²`: it falls with the cube of the rectangle's size.
+//! The gradient's own change is `−∫₀¹ B (s∂θ·d)(s∂θ + τ d × ∂p/s₀) dτ`.
+//!
+//! With `x̂` and v of the page before, and `b = x̂ (2v² + 1 − x̂)`, plus in the first quarter turn, minus in the
+//! second:
+//!
+//! ```text
+//! K + K_θθ = κ_c + h ± b h′ + (x̂ v)² h″            where h is kept
+//! K + K_θθ = κ_c + f + (1 − x) f′ + x v² f″         where f = x h is
+//! ```
+//!
+//! Within the rectangle, whose places are within r s₀ of its centre's `(t_a, t_b)`, θ, cos θ and sin θ are within
+//! `arcsin r ≤ r (1 + r²/4)` of theirs while `r ≤ 1/4`, and `s₀³/s³ − 1` is at most `3r + 12r²`; the rest follows by
+//! adding and multiplying intervals, each its middle and its radius (Moore, Kearfott & Cloud 2009, *Introduction to
+//! Interval Analysis*, §2.2), and from h″ being linear in each cell of the spline.
 
+use super::Edge;
+use super::interval::Interval;
+use super::picture::{Line, Picture, Spot};
 use super::piece::Piece;
-use super::{Edge, Isoradials};
-use crate::scene::{Affine, View};
 
 /// The rays of a rectangle of the picture that meet the disk's plane in one and the same quarter turn.
 #[derive(Debug, Clone, Copy)]
 pub struct Patch {
-    /// Which quarter turn, 0 or 1.
-    quarter: usize,
-    /// At the centre: `z`, `z − κ_c s`, s, x.
-    z: f64,
-    excess: f64,
-    s: f64,
-    x: f64,
+    /// Its centre.
+    spot: Spot,
+    /// Pixels from the centre to its sides.
+    half: [f64; 2],
     /// How far x is from the centre's at most.
     reach: f64,
-    /// Of z, along columns and rows.
-    slope: [f64; 2],
-    /// `∂s`.
-    along: [Interval; 2],
-    /// `−s ∂x`.
-    turning: [Interval; 2],
+    /// How much z changes at most, and s by which share.
+    span: (f64, f64),
+    /// `s₀³/s³`.
+    nearer: Interval,
+    /// `|d × ∂p|/s₀` for a pixel's d.
+    turned: f64,
+    /// `x̂`.
+    share: Interval,
+    /// v².
+    turn: Interval,
 }
 
-/// `g` of one edge over a patch: `value + per_column dx + per_row dy`, each with an error of its own; dx and dy in
-/// pixels from the centre.
-#[derive(Debug, Clone, Copy)]
-pub struct Line {
+/// One edge over a patch: `line` with `−½ bend (s∂θ·d)²` for its quadratic part, and what is not quadratic.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Bent {
     /// At the centre.
-    pub value: Interval,
-    /// For each pixel to the right.
-    pub per_column: Interval,
-    /// For each pixel downwards.
-    pub per_row: Interval,
+    pub line: Line,
+    /// By how much the value is off at most, through rounding.
+    rounding: f64,
+    /// B.
+    pub bend: Interval,
 }
 
 /// A side of an edge.
@@ -63,297 +73,248 @@ pub enum Side {
     Below,
 }
 
-/// The numbers within `radius` of `middle`.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Interval {
-    /// Its middle.
-    pub middle: f64,
-    /// Half its width.
-    pub radius: f64,
-}
-
 /// Share of its terms by which a value may be off through rounding: some ε of each, with room.
 const ROUNDING: f64 = 1e-13;
 
-impl Interval {
-    fn times(self, other: Self) -> Self {
-        let (a, b) = (self.middle.abs(), other.middle.abs());
-        Self {
-            middle: self.middle * other.middle,
-            radius: a * other.radius + self.radius * (b + other.radius),
-        }
-    }
+/// The largest r that the bounds hold for.
+const WIDEST: f64 = 0.25;
 
-    /// The largest size of a number in it.
-    pub fn most(self) -> f64 {
-        self.middle.abs() + self.radius
-    }
-}
-
-impl Patch {
+impl Picture<'_> {
     /// The rays of a rectangle of the picture, its sides in pixels from the left and from the top. None where they
     /// are in both quarter turns, or all about the hole's direction or the one away from it.
     #[inline]
-    pub fn new(
-        view: &View,
-        curves: &Isoradials,
-        columns: (f64, f64),
-        rows: (f64, f64),
-    ) -> Option<Self> {
-        Self::of(view, curves, columns, rows, None)
+    pub fn patch(&self, columns: (f64, f64), rows: (f64, f64)) -> Option<Patch> {
+        self.patch_of(columns, rows, None)
     }
 
     /// The same of those rays of a rectangle that meet the plane in one of the quarter turns, 0 or 1; with the curves
     /// continued a little beyond it. None too where that is no little way, close to the disk's plane.
-    pub fn in_quarter(
-        view: &View,
-        curves: &Isoradials,
+    pub fn patch_in_quarter(
+        &self,
         columns: (f64, f64),
         rows: (f64, f64),
         quarter: usize,
-    ) -> Option<Self> {
-        Self::of(view, curves, columns, rows, Some(quarter))
+    ) -> Option<Patch> {
+        self.patch_of(columns, rows, Some(quarter))
     }
 
     /// Where in a rectangle the rays meet the plane at a quarter turn, D = 0: positive in the first one.
-    pub fn border(view: &View, columns: (f64, f64), rows: (f64, f64)) -> Line {
+    pub fn border(&self, columns: (f64, f64), rows: (f64, f64)) -> Line {
         let (x, y) = (
-            view.x_at(0.5 * (columns.0 + columns.1)),
-            view.y_at(0.5 * (rows.0 + rows.1)),
+            self.view.x_at(0.5 * (columns.0 + columns.1)),
+            self.view.y_at(0.5 * (rows.0 + rows.1)),
         );
-        let exactly = |middle| Interval {
-            middle,
-            radius: 0.0,
-        };
-        let (d, pixel) = (view.plane_slope(), view.pixel_side());
+        let [right, down] = self.per_pixel;
         Line {
-            value: exactly(d * view.ta().at(x, y)),
-            per_column: exactly(d * view.ta().per_x * pixel),
-            per_row: exactly(-d * view.ta().per_y * pixel),
+            value: self.d * self.view.ta().at(x, y),
+            per_column: self.d * right.ta,
+            per_row: self.d * down.ta,
         }
     }
 
     #[inline]
-    fn of(
-        view: &View,
-        curves: &Isoradials,
+    fn patch_of(
+        &self,
         columns: (f64, f64),
         rows: (f64, f64),
         wanted: Option<usize>,
-    ) -> Option<Self> {
-        let (z, ta, tb) = (view.z(), view.ta(), view.tb());
-        let (x, y) = (
-            view.x_at(0.5 * (columns.0 + columns.1)),
-            view.y_at(0.5 * (rows.0 + rows.1)),
-        );
-        let pixel = view.pixel_side();
-        let (half_x, half_y) = (
-            0.5 * pixel * (columns.1 - columns.0),
-            0.5 * pixel * (rows.1 - rows.0),
-        );
-        let reach = |affine: Affine| (affine.per_x * half_x).abs() + (affine.per_y * half_y).abs();
-        let (z_centre, a, b) = (z.at(x, y), ta.at(x, y), tb.at(x, y));
-        let s = (a * a + b * b).sqrt();
-        let (reach_a, reach_b) = (reach(ta), reach(tb));
-        let radius = (reach_a * reach_a + reach_b * reach_b).sqrt();
-        if radius >= 0.5 * s {
+    ) -> Option<Patch> {
+        let centre = (0.5 * (columns.0 + columns.1), 0.5 * (rows.0 + rows.1));
+        let spot = self.spot(centre, wanted)?;
+        let half = [0.5 * (columns.1 - columns.0), 0.5 * (rows.1 - rows.0)];
+        let [right, down] = self.per_pixel;
+        let span = |right: f64, down: f64| right.abs() * half[0] + down.abs() * half[1];
+        let (reach_a, reach_b) = (span(right.ta, down.ta), span(right.tb, down.tb));
+        let inverse = 1.0 / spot.s;
+        let r = (reach_a * reach_a + reach_b * reach_b).sqrt() * inverse;
+        if r > WIDEST {
             return None;
         }
-        let inverse = 1.0 / s;
-        let spread = radius / (s - radius) + 4.0 * f64::EPSILON;
-        let (ca, cb) = (
-            Interval {
-                middle: a * inverse,
-                radius: spread,
-            },
-            Interval {
-                middle: b * inverse,
-                radius: spread,
-            },
-        );
-        let (n, d) = (view.n_p().abs(), view.plane_slope());
-        // |D|/s, less than 0 beyond the quarter turn's end.
-        let quarter = wanted.unwrap_or(usize::from(d * ca.middle < 0.0));
-        let size = d * if quarter == 0 { ca.middle } else { -ca.middle };
-        let least = size - d.abs() * spread;
-        let near = match wanted {
-            None if least <= 0.0 && d != 0.0 => return None,
-            None => n + least.max(0.0),
-            // In the plane x is 0 or 1 all over the quarter turn.
-            Some(_) if n == 0.0 => d.abs(),
-            Some(_) => n + least,
-        };
-        if near <= 0.5 * n || near == 0.0 {
-            return None;
+        let spread = r * (1.0 + 0.25 * r * r) + 4.0 * f64::EPSILON;
+        let (n, d) = (self.n, self.d.abs());
+        let least = spot.size - d * spread;
+        match wanted {
+            None if least <= 0.0 && d > 0.0 => return None,
+            // In the disk's plane x is 0 or 1 all over the quarter turn.
+            Some(_) if n > 0.0 && least <= -0.5 * n => return None,
+            _ => {}
         }
-        let far = n + (size + d.abs() * spread).min(d.abs());
-        let middle = if n == 0.0 { size.abs() } else { n + size };
-        let share = if quarter == 0 {
-            n / middle
+        let (share, turn) = if n > 0.0 {
+            let nearest = 1.0 / (n + least);
+            // By which share a quotient may be larger than in the centre.
+            let more = d * spread * nearest + ROUNDING;
+            (
+                Interval {
+                    middle: spot.share,
+                    radius: spot.share * more,
+                },
+                Interval {
+                    middle: spot.turn,
+                    radius: d * spread * nearest + spot.turn.abs() * more,
+                },
+            )
         } else {
-            1.0 - n / middle
+            Default::default()
         };
-        // N D₁/(N + |D|)² between its ends; x changes by it times the change of c_a.
-        let factor = n * d;
-        let (most, less) = (factor / (near * near), factor / (far * far));
-        let factor = Interval {
-            middle: 0.5 * (most + less),
-            radius: 0.5 * (most - less).abs() + ROUNDING * most.abs(),
-        };
-        let derivatives = |per_a: f64, per_b: f64| {
-            let along = Interval {
-                middle: ca.middle * per_a + cb.middle * per_b,
-                radius: spread * (per_a.abs() + per_b.abs()),
-            };
-            let across = Interval {
-                middle: cb.middle * per_a - ca.middle * per_b,
-                radius: spread * (per_a.abs() + per_b.abs()),
-            };
-            (along, factor.times(cb).times(across))
-        };
-        // Rows count downwards, Y upwards.
-        let (along_x, turning_x) = derivatives(ta.per_x * pixel, tb.per_x * pixel);
-        let (along_y, turning_y) = derivatives(-ta.per_y * pixel, -tb.per_y * pixel);
-        Some(Self {
-            quarter,
-            z: z_centre,
-            excess: z_centre - curves.critical() * s,
-            s,
-            x: share,
-            reach: if n > 0.0 {
-                factor.most() * spread + ROUNDING
-            } else {
-                0.0
+        Some(Patch {
+            spot,
+            half,
+            reach: share.most() * turn.most() * spread + if n > 0.0 { ROUNDING } else { 0.0 },
+            span: (span(right.z, down.z), r),
+            nearer: Interval {
+                middle: 1.0,
+                radius: 3.0 * r + 12.0 * r * r,
             },
-            slope: [z.per_x * pixel, -z.per_y * pixel],
-            along: [along_x, along_y],
-            turning: [turning_x, turning_y],
+            turned: (right.ta * down.tb - right.tb * down.ta).abs() * inverse,
+            share,
+            turn: turn.squared(),
         })
     }
+}
 
+impl Patch {
     /// Which quarter turn, 0 or 1.
     pub fn quarter(&self) -> usize {
-        self.quarter
+        self.spot.quarter
+    }
+
+    /// Pixels from the centre to the sides.
+    pub fn half(&self) -> [f64; 2] {
+        self.half
+    }
+
+    /// s∂θ at the centre, for each pixel to the right and downwards.
+    pub fn across(&self) -> [f64; 2] {
+        self.spot.across
     }
 
     /// One edge of one piece of [`Self::quarter`], over the patch.
     #[inline]
-    pub(super) fn line(&self, piece: &Piece, edge: Edge, critical: f64) -> Line {
-        let (h, slope) = piece.height_and_slope(edge, self.x, self.reach);
-        if h.middle.is_infinite() {
-            // The camera stands in the disk's plane: at φ = 0 the ray is on one side of every curve, whatever it is.
-            return Line {
-                value: Interval {
-                    middle: -h.middle,
-                    radius: 0.0,
-                },
-                per_column: Interval::default(),
-                per_row: Interval::default(),
+    pub(super) fn bent(&self, piece: &Piece, edge: Edge) -> Bent {
+        let spot = &self.spot;
+        let jet = piece.jet(edge, spot.x, self.reach);
+        let (line, h) = spot.line_of(piece, jet.value, jet.slope);
+        let bend = Interval {
+            middle: jet.bend,
+            radius: jet.change,
+        };
+        let slope = Interval {
+            middle: jet.slope,
+            radius: bend.most() * self.reach,
+        };
+        let value = Interval {
+            middle: jet.value,
+            radius: slope.most() * self.reach,
+        };
+        // In the first quarter turn x is x̂, so is the only piece with a pole.
+        let complement = Interval {
+            middle: 1.0 - self.share.middle,
+            ..self.share
+        };
+        let rest = if piece.has_pole() {
+            let second = bend.times(self.share.times(self.turn));
+            value.plus(slope.times(complement)).plus(second)
+        } else {
+            let twice = Interval {
+                middle: 2.0 * self.turn.middle,
+                radius: 2.0 * self.turn.radius,
             };
-        }
-        let kappa = Interval {
-            middle: critical + h.middle,
-            radius: h.radius,
+            let rate = self.share.times(twice.plus(complement));
+            let first = slope.times(rate);
+            let first = if spot.quarter == 0 {
+                first
+            } else {
+                Interval {
+                    middle: -first.middle,
+                    ..first
+                }
+            };
+            let second = bend.times(self.share.squared().times(self.turn));
+            value.plus(first).plus(second)
         };
-        let gradient = |i: usize| {
-            let (turned, turning) = (kappa.times(self.along[i]), slope.times(self.turning[i]));
-            Interval {
-                middle: self.slope[i] - turned.middle + turning.middle,
-                radius: turned.radius + turning.radius,
-            }
+        let critical = Interval {
+            middle: spot.critical,
+            radius: ROUNDING * (spot.critical.abs() + rest.most()),
         };
-        let terms = self.z.abs() + self.s * (critical.abs() + h.middle.abs());
-        Line {
-            value: Interval {
-                middle: self.excess - self.s * h.middle,
-                radius: ROUNDING * terms,
-            },
-            per_column: gradient(0),
-            per_row: gradient(1),
-        }
-    }
-}
-
-impl Line {
-    /// `−g`.
-    #[must_use]
-    pub fn opposite(&self) -> Self {
-        let opposite = |interval: Interval| Interval {
-            middle: -interval.middle,
-            ..interval
+        let inverse = Interval {
+            middle: 1.0 / spot.s,
+            radius: 0.0,
         };
-        Self {
-            value: opposite(self.value),
-            per_column: opposite(self.per_column),
-            per_row: opposite(self.per_row),
+        let (z, r) = self.span;
+        Bent {
+            line,
+            rounding: ROUNDING
+                * (spot.z.abs() + z + spot.s * (1.0 + r) * (spot.critical.abs() + h.abs())),
+            bend: critical.plus(rest).times(self.nearer).times(inverse),
         }
     }
 
-    /// On which side of the edge the whole patch is, `half` so many pixels to either side of its centre.
+    /// Half the largest square of `s∂θ·d`.
     #[inline]
-    pub fn side(&self, half: (f64, f64)) -> Option<Side> {
-        let radius =
-            self.value.radius + self.per_column.most() * half.0 + self.per_row.most() * half.1;
-        if self.value.middle - radius >= 0.0 {
+    fn half_square(&self) -> f64 {
+        let [right, down] = self.spot.across;
+        let most = right.abs() * self.half[0] + down.abs() * self.half[1];
+        0.5 * most * most
+    }
+
+    /// On which side of an edge the whole patch is.
+    #[inline]
+    pub fn side(&self, bent: &Bent) -> Option<Side> {
+        let line = &bent.line;
+        let tilt = line.per_column.abs() * self.half[0] + line.per_row.abs() * self.half[1];
+        let (bend, square) = (bent.bend, self.half_square());
+        let below = tilt + (bend.middle + bend.radius).max(0.0) * square + bent.rounding;
+        let above = tilt + (bend.radius - bend.middle).max(0.0) * square + bent.rounding;
+        if line.value - below >= 0.0 {
             Some(Side::Above)
-        } else if self.value.middle + radius < 0.0 {
+        } else if line.value + above < 0.0 {
             Some(Side::Below)
         } else {
             None
         }
     }
-}
 
-impl Piece {
-    /// h and h′ within `reach` of x.
+    /// What of an edge over the patch is not linear, at most.
     #[inline]
-    pub(super) fn height_and_slope(&self, edge: Edge, x: f64, reach: f64) -> (Interval, Interval) {
-        let (value, slope, bend) = self.jet(edge, x, reach);
-        let slope = Interval {
-            middle: slope,
-            radius: bend * reach,
-        };
-        let value = Interval {
-            middle: value,
-            radius: slope.most() * reach,
-        };
-        if !self.has_pole() {
-            return (value, slope);
-        }
-        // h = f/x, h′ = (f′ − h)/x.
-        let least = x - reach;
-        if least <= 0.0 {
-            let unknown = Interval {
-                middle: value.middle / x,
-                radius: f64::INFINITY,
-            };
-            return (unknown, unknown);
-        }
-        let inverse = Interval {
-            middle: 1.0 / x,
-            radius: reach / (x * least),
-        };
-        let height = value.times(inverse);
-        let rise = Interval {
-            middle: slope.middle - height.middle,
-            radius: slope.radius + height.radius,
-        };
-        let slope = rise.times(inverse);
-        // By the mean value theorem, where the quotient of the two intervals forgets what f and x have in common.
-        let height = Interval {
-            middle: height.middle,
-            radius: height.radius.min(slope.most() * reach),
-        };
-        (height, slope)
+    pub fn bend(&self, bent: &Bent) -> f64 {
+        bent.bend.most() * self.half_square() + bent.rounding
+    }
+
+    /// What of an edge over the patch is not quadratic, at most.
+    #[inline]
+    pub fn doubt(&self, bent: &Bent) -> f64 {
+        bent.bend.radius * self.half_square() + bent.rounding
+    }
+
+    /// By how much each part of an edge's gradient is another than in the centre, at most.
+    #[inline]
+    pub fn turning(&self, bent: &Bent) -> [f64; 2] {
+        let [right, down] = self.spot.across;
+        let [columns, rows] = self.half;
+        let most = bent.bend.most() * (right.abs() * columns + down.abs() * rows);
+        [
+            most * (right.abs() + self.turned * rows),
+            most * (down.abs() + self.turned * columns),
+        ]
+    }
+
+    /// By how much an edge is off its tangent over a pixel of the patch, at most, its tangent being that in the pixel's
+    /// centre.
+    #[inline]
+    pub fn bend_of_pixel(&self, bent: &Bent) -> f64 {
+        let [right, down] = self.spot.across;
+        let [columns, rows] = self.half;
+        let most = 0.5 * (right.abs() + down.abs() + self.turned * (columns + rows));
+        0.5 * bent.bend.most() * most * most
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::isoradial::{Sight, place};
+    use crate::isoradial::{Isoradials, Sight, place};
     use crate::orbit::exact::Exact;
-    use crate::scene::{Scene, builtins};
+    use crate::scene::{Scene, View, builtins};
 
     /// g of an edge at a place of the picture, as [`Isoradials::meets`] has it.
     fn g(view: &View, curves: &Isoradials, piece: &Piece, edge: Edge, at: (f64, f64)) -> f64 {
@@ -378,33 +339,45 @@ mod tests {
             let scene = Scene::builtin(builtin.name()).unwrap();
             let view = View::new(&scene);
             let curves = Isoradials::new(&Sight::new(&scene, &view, 1e-3), &Exact);
+            let picture = Picture::new(&view, &curves);
             let (width, height) = (f64::from(view.width()), f64::from(view.height()));
             let mut looked_at = 0;
             for _ in 0..3000 {
                 let side = libm::exp2(random(6.0));
                 let (left, top) = (random(width - side), random(height - side));
                 let (columns, rows) = ((left, left + side), (top, top + side));
-                let Some(patch) = Patch::new(&view, &curves, columns, rows) else {
+                let Some(patch) = picture.patch(columns, rows) else {
                     continue;
                 };
+                let across = patch.across();
                 for piece in curves.quarter(patch.quarter()) {
                     for edge in [Edge::Inner, Edge::Outer] {
-                        let line = patch.line(piece, edge, curves.critical());
+                        let bent = patch.bent(piece, edge);
                         for _ in 0..4 {
                             let (dx, dy) = (random(side) - 0.5 * side, random(side) - 0.5 * side);
                             let at = (left + 0.5 * side + dx, top + 0.5 * side + dy);
                             let truth = g(&view, &curves, piece, edge, at);
-                            let middle = line.value.middle
-                                + line.per_column.middle * dx
-                                + line.per_row.middle * dy;
-                            let radius = line.value.radius
-                                + line.per_column.radius * dx.abs()
-                                + line.per_row.radius * dy.abs();
+                            let (line, turned) = (bent.line, across[0] * dx + across[1] * dy);
+                            let middle = line.value + line.per_column * dx + line.per_row * dy
+                                - 0.5 * bent.bend.middle * turned * turned;
+                            let radius = 0.5 * bent.bend.radius * turned * turned + bent.rounding;
                             assert!(
                                 (truth - middle).abs() <= radius
                                     || truth == middle
                                     || radius.is_nan(),
-                                "{}: {truth} at {at:?}, not {middle} ± {radius}: {line:?}",
+                                "{}: {truth} at {at:?}, not {middle} ± {radius}: {bent:?}",
+                                builtin.name()
+                            );
+                            assert!(radius <= patch.doubt(&bent) || radius.is_nan());
+                            let there = picture.spot(at, Some(patch.quarter())).unwrap();
+                            let there = there.line(piece, edge);
+                            let [columns, rows] = patch.turning(&bent);
+                            assert!(
+                                (there.per_column - line.per_column).abs()
+                                    <= columns + bent.rounding
+                                    && (there.per_row - line.per_row).abs() <= rows + bent.rounding
+                                    || !columns.is_finite(),
+                                "{}: {there:?} at {at:?}, not {line:?} ± {columns} ± {rows}",
                                 builtin.name()
                             );
                             looked_at += usize::from(radius.is_finite() && truth.is_finite());
@@ -416,28 +389,23 @@ mod tests {
         }
     }
 
-    /// The part that is not linear falls with the square of the side.
+    /// What is not quadratic falls with the cube of the side, what is not linear with its square, to a few times the
+    /// least there can be.
     #[test]
-    fn what_is_not_linear_falls_with_the_square() {
+    fn what_is_left_falls_with_the_cube() {
         let scene = Scene::builtin("classic").unwrap();
         let view = View::new(&scene);
         let curves = Isoradials::new(&Sight::new(&scene, &view, 1e-3), &Exact);
-        let bend = |side: f64| {
-            let patch = Patch::new(
-                &view,
-                &curves,
-                (1500.0, 1500.0 + side),
-                (400.0, 400.0 + side),
-            );
+        let picture = Picture::new(&view, &curves);
+        let off = |side: f64| {
+            let patch = picture.patch((1500.0, 1500.0 + side), (400.0, 400.0 + side));
             let patch = patch.unwrap();
-            let line = patch.line(
-                &curves.quarter(patch.quarter())[0],
-                Edge::Outer,
-                curves.critical(),
-            );
-            (line.per_column.radius + line.per_row.radius) * 0.5 * side
+            let bent = patch.bent(&curves.quarter(patch.quarter())[0], Edge::Outer);
+            (patch.doubt(&bent), patch.bend(&bent))
         };
-        let ratio = bend(16.0) / bend(8.0);
-        assert!((3.5..4.6).contains(&ratio), "{ratio}");
+        let (large, small) = (off(16.0), off(8.0));
+        let (cubes, squares) = (large.0 / small.0, large.1 / small.1);
+        assert!((7.0..11.0).contains(&cubes), "{cubes}");
+        assert!((3.5..4.6).contains(&squares), "{squares}");
     }
 }

@@ -3,7 +3,7 @@
 use super::Edge;
 use super::nodes::Nodes;
 use super::sight::Sight;
-use crate::table::spline::{Scale, Stencil, bounds, jet, value};
+use crate::table::spline::{Jet, Scale, Stencil, bounds, jet, value, value_and_slope};
 
 /// A quarter turn of both curves, as splines in x of `h` (or `x h` where h has a pole).
 #[derive(Debug, Clone)]
@@ -51,9 +51,26 @@ impl Piece {
         }
         // Both ways are right, and the narrower of the two depends on how near the pole is.
         let (low, high) = over(values, x);
-        let (h, _) = self.height_and_slope(edge, 0.5 * (x.0 + x.1), 0.5 * (x.1 - x.0));
-        let radius = h.radius + 16.0 * f64::EPSILON * h.middle.abs();
-        (low.max(h.middle - radius), high.min(h.middle + radius))
+        let (middle, radius) = self.within(edge, 0.5 * (x.0 + x.1), 0.5 * (x.1 - x.0));
+        (low.max(middle - radius), high.min(middle + radius))
+    }
+
+    /// h = f/x within `reach` of x, by the mean value theorem: the quotient of two bounds forgets what f and x have in
+    /// common.
+    fn within(&self, edge: Edge, x: f64, reach: f64) -> (f64, f64) {
+        let jet = self.jet(edge, x, reach);
+        let (h, least) = (jet.value / x, x - reach);
+        if least <= 0.0 {
+            return (h, f64::INFINITY);
+        }
+        // h′ = (f′ − h)/x = (x f′ − f)/x², and x f′ − f changes by x f″.
+        let far = x + reach;
+        let change =
+            (x * jet.slope - jet.value).abs() + far * (jet.bend.abs() + jet.change) * reach;
+        (
+            h,
+            change / (least * least) * reach + 16.0 * f64::EPSILON * h.abs(),
+        )
     }
 
     /// Whether a ray with `z − κ_c s = excess` meets the disk at x.
@@ -71,10 +88,16 @@ impl Piece {
         if self.pole { kept / x } else { kept }
     }
 
-    /// Value and slope of one edge's spline at x, and the largest size of its second derivative within `reach`.
-    #[inline]
-    pub(super) fn jet(&self, edge: Edge, x: f64, reach: f64) -> (f64, f64, f64) {
+    /// One edge's spline about x, as far as `reach`.
+    #[inline(always)]
+    pub(super) fn jet(&self, edge: Edge, x: f64, reach: f64) -> Jet {
         jet(self.spline(edge), self.axis, x, reach)
+    }
+
+    /// Value and slope of one edge's spline at x.
+    #[inline(always)]
+    pub(super) fn value_and_slope(&self, edge: Edge, x: f64) -> (f64, f64) {
+        value_and_slope(self.spline(edge), self.axis, x)
     }
 
     /// Whether the spline is of `x h` in place of h, which has a pole at 0.

@@ -1,6 +1,6 @@
 //! Shares of a pixel's square: on one side of a line, and off several orders' bands.
 
-use crate::isoradial::{Line, OpenBand};
+use crate::isoradial::{Band, Line};
 
 /// The share of a square of so many pixels' side on the side `value + per_column dx + per_row dy ≥ 0` of a line, dx and
 /// dy from its centre.
@@ -9,9 +9,9 @@ use crate::isoradial::{Line, OpenBand};
 /// `(½(m + n) − |value|)²/2mn`, where the line cuts off a corner, and a trapezoid, `½ − |value|/m`, where it does not.
 fn share_above(line: &Line, side: f64) -> f64 {
     let (value, per_column, per_row) = (
-        line.value.middle,
-        line.per_column.middle.abs() * side,
-        line.per_row.middle.abs() * side,
+        line.value,
+        line.per_column.abs() * side,
+        line.per_row.abs() * side,
     );
     let (most, least) = (per_column.max(per_row), per_column.min(per_row));
     let (size, reach) = (value.abs(), 0.5 * (most + least));
@@ -29,23 +29,31 @@ fn share_above(line: &Line, side: f64) -> f64 {
 ///
 /// What lies off a band is beyond its outer edge or within its inner one, never both: off all bands is the sum, over
 /// one choice of the two for each band, of convex polygons.
-pub(super) fn share_of_union(bands: &[OpenBand], side: f64) -> f64 {
-    let off = match bands {
-        [band] => {
-            let outer = band
-                .outer
-                .map_or(0.0, |line| 1.0 - share_above(&line, side));
-            let inner = band.inner.map_or(0.0, |line| share_above(&line, side));
-            outer + inner
+pub(super) fn share_of_union(bands: &[Band], side: f64) -> f64 {
+    let mut partial = [Band::default(); MOST_BANDS];
+    let mut count = 0;
+    let mut share: f64 = 0.0;
+    for band in bands {
+        let outer = band
+            .outer
+            .map_or(0.0, |line| 1.0 - share_above(&line, side));
+        let inner = band.inner.map_or(0.0, |line| share_above(&line, side));
+        let of_band = 1.0 - (outer + inner);
+        if of_band > 0.0 {
+            share = share.max(of_band);
+            partial[count] = *band;
+            count += 1;
         }
-        _ => off(&Polygon::square(side), bands) / (side * side),
-    };
-    (1.0 - off).max(0.0)
+    }
+    if count <= 1 || share >= 1.0 {
+        return share;
+    }
+    (1.0 - off(&Polygon::square(side), &partial[..count]) / (side * side)).max(0.0)
 }
 
 /// The share of a square of so many pixels' side that is on the positive side of `border` and in any of the bands; with
 /// no band, in all of it.
-pub(super) fn share_beside(border: &Line, bands: &[OpenBand], side: f64) -> f64 {
+pub(super) fn share_beside(border: &Line, bands: &[Band], side: f64) -> f64 {
     let part = Polygon::square(side).above(border);
     let off = if bands.is_empty() {
         0.0
@@ -56,7 +64,7 @@ pub(super) fn share_beside(border: &Line, bands: &[OpenBand], side: f64) -> f64 
 }
 
 /// The area of a polygon that lies off all bands.
-fn off(polygon: &Polygon, bands: &[OpenBand]) -> f64 {
+fn off(polygon: &Polygon, bands: &[Band]) -> f64 {
     let Some((band, others)) = bands.split_first() else {
         return polygon.area();
     };
@@ -78,6 +86,9 @@ struct Polygon {
     count: usize,
 }
 
+/// As many orders as there are at most.
+const MOST_BANDS: usize = 12;
+
 /// A square's four, and one more for each order's edge.
 const MOST: usize = 20;
 
@@ -91,9 +102,7 @@ impl Polygon {
 
     /// The part on the side `g ≥ 0` of a line (Sutherland & Hodgman 1974, *Commun. ACM* 17, 32).
     fn above(&self, line: &Line) -> Self {
-        let g = |(x, y): (f64, f64)| {
-            line.value.middle + line.per_column.middle * x + line.per_row.middle * y
-        };
+        let g = |(x, y): (f64, f64)| line.value + line.per_column * x + line.per_row * y;
         let mut part = Self {
             corners: [(0.0, 0.0); MOST],
             count: 0,
@@ -132,17 +141,12 @@ impl Polygon {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::isoradial::Interval;
 
     fn line(value: f64, per_column: f64, per_row: f64) -> Line {
-        let exactly = |middle| Interval {
-            middle,
-            radius: 0.0,
-        };
         Line {
-            value: exactly(value),
-            per_column: exactly(per_column),
-            per_row: exactly(per_row),
+            value,
+            per_column,
+            per_row,
         }
     }
 
@@ -179,7 +183,7 @@ mod tests {
         let mut state = 1_u64;
         for count in [1, 2, 3] {
             for _ in 0..60 {
-                let bands: Vec<OpenBand> = (0..count)
+                let bands: Vec<Band> = (0..count)
                     .map(|_| {
                         state = state
                             .wrapping_mul(6_364_136_223_846_793_005)
@@ -187,16 +191,25 @@ mod tests {
                         let outer = lines[(state >> 33) as usize % lines.len()];
                         // The inner edge lies within the outer one.
                         let mut inner = outer;
-                        inner.value.middle -= 3.0 * 0.3;
+                        inner.value -= 3.0 * 0.3;
                         match (state >> 20) % 3 {
-                            0 => OpenBand::new(Some(outer), None),
-                            1 => OpenBand::new(None, Some(inner)),
-                            _ => OpenBand::new(Some(outer), Some(inner)),
+                            0 => Band {
+                                outer: Some(outer),
+                                inner: None,
+                            },
+                            1 => Band {
+                                outer: None,
+                                inner: Some(inner),
+                            },
+                            _ => Band {
+                                outer: Some(outer),
+                                inner: Some(inner),
+                            },
                         }
                     })
                     .collect();
                 let g = |line: &Line, x: f64, y: f64| {
-                    line.value.middle + line.per_column.middle * x + line.per_row.middle * y
+                    line.value + line.per_column * x + line.per_row * y
                 };
                 let inside = |x: f64, y: f64| {
                     bands.iter().any(|band| {

@@ -10,16 +10,14 @@
 //! where they must be: so are pixels that look at the hole.
 
 use super::area::{share_beside, share_of_union};
-use super::tiles::{Filler, fill_frame, is_straight};
+use super::leaf::is_straight;
+use super::tiles::{Pixels, fill_frame};
 use super::{RenderError, blank};
-use crate::isoradial::{Bundle, Isoradials, Open, Patch, Uniform, Verdict};
+use crate::isoradial::{Bundle, Isoradials, Open, OpenEdges, Picture, Uniform, Verdict};
 use crate::scene::View;
 
-/// What is not linear of the edges over a tile, in pixels, below which it is cut into rows: measured as the cheapest.
-pub(super) const STRAIGHT_TILE: f64 = 0.4;
-
 /// What is not linear of an edge over a pixel, in pixels, beyond which the pixel is cut up.
-const STRAIGHT: f64 = 0.25;
+pub(super) const STRAIGHT: f64 = 0.25;
 
 /// How often a pixel is cut at most: into parts of a sixteenth of its side.
 const CUTS: u32 = 4;
@@ -45,15 +43,7 @@ pub fn render_into(
     pixels: &mut [u8],
     stride: usize,
 ) -> Result<(), RenderError> {
-    let shares = Shares { view, curves };
-    let filler = Filler {
-        view,
-        curves,
-        reach: 0.5,
-        straight: STRAIGHT_TILE,
-        pixel: |column: usize, row: usize, open: Option<&Open>| shares.value(column, row, open),
-    };
-    fill_frame(&filler, pixels, stride)
+    fill_frame(view, curves, Shares::new(view, curves), pixels, stride)
 }
 
 /// The same pixels, each found by itself.
@@ -61,28 +51,52 @@ pub fn render_into(
 /// # Errors
 /// [`RenderError::Memory`]
 pub fn render_every_pixel(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> {
-    let shares = Shares { view, curves };
+    let shares = Shares::new(view, curves);
     super::each_pixel(view, |column, row| shares.value(column, row, None))
 }
 
 /// What of a pixel is the disk.
-struct Shares<'a> {
+pub(super) struct Shares<'a> {
     view: &'a View,
     curves: &'a Isoradials,
+    picture: Picture<'a>,
 }
 
-impl Shares<'_> {
-    /// The value of a pixel; `open` are edges among which are all that are open over it.
-    fn value(&self, column: usize, row: usize, open: Option<&Open>) -> u8 {
+impl Pixels for Shares<'_> {
+    const REACH: f64 = 0.5;
+
+    /// Measured as the cheapest.
+    const DOUBT: f64 = 0.1;
+
+    fn value(&self, column: usize, row: usize, open: Option<Open>) -> u8 {
         let (left, top) = (column as f64, row as f64);
-        let share = self.share((left, left + 1.0), (top, top + 1.0), open, CUTS);
-        (255.0 * share + 0.5) as u8
+        byte(self.share((left, left + 1.0), (top, top + 1.0), open, CUTS))
+    }
+
+    fn value_along(&self, column: usize, row: usize, leaf: &OpenEdges) -> u8 {
+        let centre = (column as f64 + 0.5, row as f64 + 0.5);
+        let bands = self.picture.bands_at(centre, leaf.edges());
+        byte(share_of_union(bands.as_slice(), 1.0))
+    }
+}
+
+fn byte(share: f64) -> u8 {
+    (255.0 * share + 0.5) as u8
+}
+
+impl<'a> Shares<'a> {
+    fn new(view: &'a View, curves: &'a Isoradials) -> Self {
+        Self {
+            view,
+            curves,
+            picture: Picture::new(view, curves),
+        }
     }
 
     /// The share of a rectangle.
-    fn share(&self, columns: (f64, f64), rows: (f64, f64), open: Option<&Open>, cuts: u32) -> f64 {
+    fn share(&self, columns: (f64, f64), rows: (f64, f64), open: Option<Open>, cuts: u32) -> f64 {
         let side = columns.1 - columns.0;
-        let Some(patch) = Patch::new(self.view, self.curves, columns, rows) else {
+        let Some(patch) = self.picture.patch(columns, rows) else {
             return if let Some(share) = self.share_of_both(columns, rows) {
                 share
             } else if cuts == 0 {
@@ -96,23 +110,23 @@ impl Shares<'_> {
                 self.quarters(columns, rows, None, cuts)
             };
         };
-        let half = (0.5 * side, 0.5 * side);
-        match self.curves.patched(&patch, half, open) {
+        let mut edges = OpenEdges::none();
+        match self.curves.patched(&patch, open, &mut edges) {
             Err(Uniform::Hit) => 1.0,
             Err(Uniform::Miss) => 0.0,
-            Ok(open) if is_straight(&open, half, STRAIGHT * side) => {
-                share_of_union(open.bands(), side)
+            Ok(_) if is_straight(&patch, &edges, STRAIGHT * side) => {
+                share_of_union(edges.bands().as_slice(), side)
             }
             // Edges that bend this much may be far from their tangents, and show where no tile lets them.
-            Ok(open) if cuts == 0 => {
+            Ok(_) if cuts == 0 => {
                 let bundle = Bundle::new(self.view, columns, rows);
                 match bundle.map_or(Verdict::Mixed, |bundle| self.curves.verdict(&bundle)) {
                     Verdict::Hit => 1.0,
                     Verdict::Miss => 0.0,
-                    Verdict::Mixed => share_of_union(open.bands(), side),
+                    Verdict::Mixed => share_of_union(edges.bands().as_slice(), side),
                 }
             }
-            Ok(open) => self.quarters(columns, rows, Some(&open), cuts),
+            Ok(open) => self.quarters(columns, rows, Some(open), cuts),
         }
     }
 
@@ -120,16 +134,16 @@ impl Shares<'_> {
     /// edges are straight.
     fn share_of_both(&self, columns: (f64, f64), rows: (f64, f64)) -> Option<f64> {
         let side = columns.1 - columns.0;
-        let half = (0.5 * side, 0.5 * side);
-        let border = Patch::border(self.view, columns, rows);
+        let border = self.picture.border(columns, rows);
+        let mut edges = OpenEdges::none();
         let mut share = 0.0;
         for (quarter, border) in [border, border.opposite()].into_iter().enumerate() {
-            let patch = Patch::in_quarter(self.view, self.curves, columns, rows, quarter)?;
-            share += match self.curves.patched(&patch, half, None) {
+            let patch = self.picture.patch_in_quarter(columns, rows, quarter)?;
+            share += match self.curves.patched(&patch, None, &mut edges) {
                 Err(Uniform::Hit) => share_beside(&border, &[], side),
                 Err(Uniform::Miss) => 0.0,
-                Ok(open) if is_straight(&open, half, STRAIGHT * side) => {
-                    share_beside(&border, open.bands(), side)
+                Ok(_) if is_straight(&patch, &edges, STRAIGHT * side) => {
+                    share_beside(&border, edges.bands().as_slice(), side)
                 }
                 Ok(_) => return None,
             };
@@ -142,7 +156,7 @@ impl Shares<'_> {
         &self,
         columns: (f64, f64),
         rows: (f64, f64),
-        open: Option<&Open>,
+        open: Option<Open>,
         cuts: u32,
     ) -> f64 {
         let (column, row) = (0.5 * (columns.0 + columns.1), 0.5 * (rows.0 + rows.1));

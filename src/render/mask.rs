@@ -1,13 +1,10 @@
 //! Frames with hard edges: white where a pixel's centre sees the disk, two comparisons a pixel and order, and those only
 //! along the disk's edges.
 
-use super::tiles::{Filler, fill_frame};
+use super::tiles::{Pixels, fill_frame};
 use super::{RenderError, blank, each_pixel};
-use crate::isoradial::{Isoradials, Open};
+use crate::isoradial::{Isoradials, Open, OpenEdges};
 use crate::scene::View;
-
-/// What is not linear of the edges over a tile, in pixels, below which it is cut into rows: measured as the cheapest.
-pub(super) const STRAIGHT_TILE: f64 = 1.2;
 
 /// White: the disk.
 pub const WHITE: u8 = 255;
@@ -33,14 +30,7 @@ pub fn render_into(
     pixels: &mut [u8],
     stride: usize,
 ) -> Result<(), RenderError> {
-    let filler = Filler {
-        view,
-        curves,
-        reach: 0.0,
-        straight: STRAIGHT_TILE,
-        pixel: |column: usize, row: usize, _: Option<&Open>| value(view, curves, column, row),
-    };
-    fill_frame(&filler, pixels, stride)
+    fill_frame(view, curves, Hard { view, curves }, pixels, stride)
 }
 
 /// The same pixels, each asked by itself.
@@ -48,14 +38,33 @@ pub fn render_into(
 /// # Errors
 /// [`RenderError::Memory`]
 pub fn render_every_pixel(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> {
-    each_pixel(view, |column, row| value(view, curves, column, row))
+    let pixels = Hard { view, curves };
+    each_pixel(view, |column, row| pixels.value(column, row, None))
 }
 
-fn value(view: &View, curves: &Isoradials, column: usize, row: usize) -> u8 {
-    if sees(view, curves, (column as f64 + 0.5, row as f64 + 0.5)) {
-        WHITE
-    } else {
-        0
+/// Pixels that are what their centres see.
+pub(super) struct Hard<'a> {
+    view: &'a View,
+    curves: &'a Isoradials,
+}
+
+impl Pixels for Hard<'_> {
+    const REACH: f64 = 0.0;
+
+    /// Measured as the cheapest.
+    const DOUBT: f64 = 0.05;
+
+    fn value(&self, column: usize, row: usize, _: Option<Open>) -> u8 {
+        let centre = (column as f64 + 0.5, row as f64 + 0.5);
+        if sees(self.view, self.curves, centre) {
+            WHITE
+        } else {
+            0
+        }
+    }
+
+    fn value_along(&self, column: usize, row: usize, _: &OpenEdges) -> u8 {
+        self.value(column, row, None)
     }
 }
 

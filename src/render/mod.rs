@@ -3,6 +3,7 @@
 
 mod area;
 pub mod coverage;
+mod leaf;
 pub mod mask;
 pub mod needs;
 pub mod pixelwise;

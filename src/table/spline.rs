@@ -174,34 +174,54 @@ pub(crate) fn bounds(coefficients: &[f64], axis: Scale, x: (f64, f64)) -> (f64, 
     (ends.0.min(ends.1) - margin, ends.0.max(ends.1) + margin)
 }
 
-/// A spline's value and slope at x, and the largest size of its second derivative within `reach` of x: that is linear
-/// within each cell, between the coefficients' second differences.
-#[inline]
-pub(crate) fn jet(coefficients: &[f64], axis: Scale, x: f64, reach: f64) -> (f64, f64, f64) {
-    let t = (x - axis.start) * axis.per_unit;
-    let cell = axis.cell(t);
-    let first = cell as usize;
-    let f = t - f64::from(cell);
+/// A spline about one place.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Jet {
+    pub(crate) value: f64,
+    pub(crate) slope: f64,
+    /// The second derivative there.
+    pub(crate) bend: f64,
+    /// How far the second derivative is from that at most, near by.
+    pub(crate) change: f64,
+}
+
+/// A spline's value and slope at x.
+#[inline(always)]
+pub(crate) fn value_and_slope(coefficients: &[f64], axis: Scale, x: f64) -> (f64, f64) {
+    let (cell, f) = axis.cell_and_share(x);
+    let c = &coefficients[cell..cell + 4];
     let g = 1.0 - f;
-    let c = &coefficients[first..first + 4];
-    let stencil = Stencil {
-        first,
-        weights: weights(f),
-    };
+    let w = weights(f);
     let slope =
         (f * f * c[3] - g * g * c[0]) + (g * (4.0 - 3.0 * g) * c[2] - f * (4.0 - 3.0 * f) * c[1]);
-    let cells = reach * axis.per_unit;
-    let (low, high) = (axis.cell(t - cells) as usize, axis.cell(t + cells) as usize);
-    let bend = coefficients[low..high + 4]
-        .windows(3)
-        .fold(0.0, |bend: f64, c| {
-            bend.max((c[0] - 2.0 * c[1] + c[2]).abs())
-        });
     (
-        value(coefficients, &stencil),
+        (w[0] * c[0] + w[1] * c[1]) + (w[2] * c[2] + w[3] * c[3]),
         3.0 * slope * axis.per_unit,
-        6.0 * bend * axis.per_unit * axis.per_unit,
     )
+}
+
+/// A spline about x, as far as `reach`. Its third derivative is constant in each cell: the coefficients' third
+/// difference.
+#[inline(always)]
+pub(crate) fn jet(coefficients: &[f64], axis: Scale, x: f64, reach: f64) -> Jet {
+    let (value, slope) = value_and_slope(coefficients, axis, x);
+    let (cell, f) = axis.cell_and_share(x);
+    let c = &coefficients[cell..cell + 4];
+    let second = (c[0] - 2.0 * c[1] + c[2], c[1] - 2.0 * c[2] + c[3]);
+    let (low, _) = axis.cell_and_share(x - reach);
+    let (high, _) = axis.cell_and_share(x + reach);
+    let third = coefficients[low..high + 4]
+        .windows(4)
+        .fold(0.0, |third: f64, c| {
+            third.max(((c[3] - c[0]) - 3.0 * (c[2] - c[1])).abs())
+        });
+    let scale = 6.0 * axis.per_unit * axis.per_unit;
+    Jet {
+        value,
+        slope,
+        bend: scale * ((1.0 - f) * second.0 + f * second.1),
+        change: scale * axis.per_unit * reach * third,
+    }
 }
 
 /// The values at two places of a spline of two variables, stored row by row: `rows` along the slow axis, `columns`
@@ -358,19 +378,20 @@ mod tests {
         let at = |x: f64| value(&c, &axis.stencil(x));
         for k in 2..58 {
             let x = -1.0 + f64::from(k) * 0.05 + 0.01;
-            let (height, slope, bend) = jet(&c, axis, x, 0.071);
-            assert_eq!(height, at(x));
+            let jet = jet(&c, axis, x, 0.071);
+            assert_eq!(jet.value, at(x));
             let (before, after) = (at(x - 1e-4), at(x + 1e-4));
             assert!(
-                (slope - (after - before) / 2e-4).abs() < 1e-5,
-                "{slope} at {x}"
+                (jet.slope - (after - before) / 2e-4).abs() < 1e-5,
+                "{jet:?} at {x}"
             );
             for j in -7..=7 {
                 let y = x + f64::from(j) * 0.0099;
                 let second = (at(y - 1e-3) - 2.0 * at(y) + at(y + 1e-3)) / 1e-6;
+                // A difference quotient of values that are right to ε.
                 assert!(
-                    second.abs() <= bend * (1.0 + 1e-6) + 1e-6,
-                    "{second} over {bend} at {y}"
+                    (second - jet.bend).abs() <= jet.change + 1e-6,
+                    "{second} at {y}: {jet:?}"
                 );
             }
         }
