@@ -10,11 +10,13 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Every number is in it.
-    pub const ALL: Self = Self {
-        middle: 0.0,
-        radius: f64::INFINITY,
-    };
+    #[inline]
+    pub(super) fn between((least, greatest): (f64, f64)) -> Self {
+        Self {
+            middle: 0.5 * (least + greatest),
+            radius: 0.5 * (greatest - least),
+        }
+    }
 
     /// The largest size of a number in it.
     #[inline]
@@ -27,6 +29,14 @@ impl Interval {
         Self {
             middle: self.middle + other.middle,
             radius: self.radius + other.radius,
+        }
+    }
+
+    #[inline]
+    pub(super) fn scaled(self, factor: f64) -> Self {
+        Self {
+            middle: factor * self.middle,
+            radius: factor.abs() * self.radius,
         }
     }
 

@@ -133,6 +133,9 @@ impl Isoradials {
             let index = asked.trailing_zeros() as usize / 2;
             let both = (asked >> (2 * index)) & 3;
             asked &= !(3 << (2 * index));
+            if !patch.overlaps(&pieces[index]) {
+                continue;
+            }
             let mut left = 0;
             let mut missed = false;
             for (bit, edge, outside, inside) in [

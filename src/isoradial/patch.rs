@@ -41,14 +41,19 @@ pub struct Patch {
     half: [f64; 2],
     /// How far x is from the centre's at most.
     reach: f64,
-    /// How much z changes at most, and s by which share.
-    span: (f64, f64),
-    /// `s₀³/s³`.
-    nearer: Interval,
+    /// `z/s − κ_c`.
+    heights: (f64, f64),
+    /// What a value may be off by through rounding, but for what h makes of it.
+    rounding: f64,
+    /// s, at most.
+    s_most: f64,
+    /// `s₀³/s³ − 1`, at most.
+    nearer: f64,
     /// `|d × ∂p|/s₀` for a pixel's d.
     turned: f64,
-    /// `x̂`.
+    /// `x̂` and `1 − x̂`.
     share: Interval,
+    complement: Interval,
     /// v².
     turn: Interval,
 }
@@ -156,14 +161,23 @@ impl Picture<'_> {
         } else {
             Default::default()
         };
+        let (z, s_most) = (span(right.z, down.z), spot.s * (1.0 + r));
+        let kappa = spot.z * inverse;
+        let height = kappa - spot.critical;
+        // κ s₀/s is within the first part of κ, s₀/s within the share r/(1 − r) of 1.
+        let height_reach = (z * inverse + r * kappa.abs()) / (1.0 - r)
+            + ROUNDING * (kappa.abs() + spot.critical.abs());
         Some(Patch {
             spot,
             half,
             reach: share.most() * turn.most() * spread + if n > 0.0 { ROUNDING } else { 0.0 },
-            span: (span(right.z, down.z), r),
-            nearer: Interval {
-                middle: 1.0,
-                radius: 3.0 * r + 12.0 * r * r,
+            heights: (height - height_reach, height + height_reach),
+            rounding: ROUNDING * (spot.z.abs() + z + s_most * spot.critical.abs()),
+            s_most,
+            nearer: 3.0 * r + 12.0 * r * r,
+            complement: Interval {
+                middle: 1.0 - share.middle,
+                ..share
             },
             turned: (right.ta * down.tb - right.tb * down.ta).abs() * inverse,
             share,
@@ -188,64 +202,58 @@ impl Patch {
         self.spot.across
     }
 
+    /// Whether some ray of the patch has the slope of some ray that meets the disk in a piece.
+    #[inline]
+    pub(super) fn overlaps(&self, piece: &Piece) -> bool {
+        !(self.heights.1 < piece.lowest || self.heights.0 > piece.highest)
+    }
+
     /// One edge of one piece of [`Self::quarter`], over the patch.
     #[inline]
     pub(super) fn bent(&self, piece: &Piece, edge: Edge) -> Bent {
         let spot = &self.spot;
         let jet = piece.jet(edge, spot.x, self.reach);
         let (line, h) = spot.line_of(piece, jet.value, jet.slope);
+        if h.is_infinite() {
+            return Bent {
+                line,
+                ..Bent::default()
+            };
+        }
+        let third = Interval::between(jet.third);
         let bend = Interval {
             middle: jet.bend,
-            radius: jet.change,
+            radius: third.most() * self.reach,
         };
-        let slope = Interval {
-            middle: jet.slope,
-            radius: bend.most() * self.reach,
-        };
-        let value = Interval {
-            middle: jet.value,
-            radius: slope.most() * self.reach,
-        };
-        // In the first quarter turn x is x̂, so is the only piece with a pole.
-        let complement = Interval {
-            middle: 1.0 - self.share.middle,
-            ..self.share
-        };
-        let rest = if piece.has_pole() {
-            let second = bend.times(self.share.times(self.turn));
-            value.plus(slope.times(complement)).plus(second)
+        // K + K_θθ in the centre, and its derivative over the patch but for the factor x̂ v.
+        let (x, v2) = (spot.share, self.turn.middle);
+        let (middle, rate) = if piece.has_pole() {
+            let middle = jet.value + (1.0 - x) * jet.slope + x * v2 * jet.bend;
+            let rate = bend.times(self.turn.plus(self.complement)).scaled(3.0);
+            (middle, rate.plus(third.times(self.share.times(self.turn))))
         } else {
-            let twice = Interval {
-                middle: 2.0 * self.turn.middle,
-                radius: 2.0 * self.turn.radius,
+            let sign = if spot.quarter == 0 { 1.0 } else { -1.0 };
+            let slope = Interval {
+                middle: jet.slope,
+                radius: bend.most() * self.reach,
             };
-            let rate = self.share.times(twice.plus(complement));
-            let first = slope.times(rate);
-            let first = if spot.quarter == 0 {
-                first
-            } else {
-                Interval {
-                    middle: -first.middle,
-                    ..first
-                }
-            };
-            let second = bend.times(self.share.squared().times(self.turn));
-            value.plus(first).plus(second)
+            let twice = self.turn.scaled(2.0).plus(self.complement);
+            let middle = jet.value + sign * x * twice.middle * jet.slope + x * x * v2 * jet.bend;
+            let first = slope.times(self.turn.plus(self.complement)).scaled(6.0);
+            let second = bend.times(self.share.times(twice)).scaled(3.0 * sign);
+            let last = third.times(self.share.squared().times(self.turn));
+            (middle, first.plus(second).plus(last))
         };
-        let critical = Interval {
-            middle: spot.critical,
-            radius: ROUNDING * (spot.critical.abs() + rest.most()),
-        };
-        let inverse = Interval {
-            middle: 1.0 / spot.s,
-            radius: 0.0,
-        };
-        let (z, r) = self.span;
+        let middle = spot.critical + middle;
+        let change = rate.most() * self.reach + ROUNDING * (spot.critical.abs() + middle.abs());
+        let inverse = 1.0 / spot.s;
         Bent {
             line,
-            rounding: ROUNDING
-                * (spot.z.abs() + z + spot.s * (1.0 + r) * (spot.critical.abs() + h.abs())),
-            bend: critical.plus(rest).times(self.nearer).times(inverse),
+            rounding: self.rounding + ROUNDING * self.s_most * h.abs(),
+            bend: Interval {
+                middle: middle * inverse,
+                radius: inverse * (change * (1.0 + self.nearer) + middle.abs() * self.nearer),
+            },
         }
     }
 

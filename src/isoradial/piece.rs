@@ -65,8 +65,8 @@ impl Piece {
         }
         // h′ = (f′ − h)/x = (x f′ − f)/x², and x f′ − f changes by x f″.
         let far = x + reach;
-        let change =
-            (x * jet.slope - jet.value).abs() + far * (jet.bend.abs() + jet.change) * reach;
+        let change = (x * jet.slope - jet.value).abs()
+            + far * (jet.bend.abs() + jet.third.0.abs().max(jet.third.1.abs()) * reach) * reach;
         (
             h,
             change / (least * least) * reach + 16.0 * f64::EPSILON * h.abs(),

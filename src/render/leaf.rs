@@ -21,7 +21,7 @@ pub(super) struct Leaf {
 }
 
 /// More edges than these are not drawn together.
-const MOST: usize = 6;
+const MOST: usize = 24;
 
 /// One edge, as a multiple of what it may be off by: positive within the band.
 #[derive(Debug, Clone, Copy, Default)]

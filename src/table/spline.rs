@@ -179,10 +179,10 @@ pub(crate) fn bounds(coefficients: &[f64], axis: Scale, x: (f64, f64)) -> (f64, 
 pub(crate) struct Jet {
     pub(crate) value: f64,
     pub(crate) slope: f64,
-    /// The second derivative there.
+    /// The second derivative.
     pub(crate) bend: f64,
-    /// How far the second derivative is from that at most, near by.
-    pub(crate) change: f64,
+    /// The least and the greatest third derivative near by.
+    pub(crate) third: (f64, f64),
 }
 
 /// A spline's value and slope at x.
@@ -210,17 +210,20 @@ pub(crate) fn jet(coefficients: &[f64], axis: Scale, x: f64, reach: f64) -> Jet 
     let second = (c[0] - 2.0 * c[1] + c[2], c[1] - 2.0 * c[2] + c[3]);
     let (low, _) = axis.cell_and_share(x - reach);
     let (high, _) = axis.cell_and_share(x + reach);
-    let third = coefficients[low..high + 4]
-        .windows(4)
-        .fold(0.0, |third: f64, c| {
-            third.max(((c[3] - c[0]) - 3.0 * (c[2] - c[1])).abs())
-        });
+    let third = coefficients[low..high + 4].windows(4).fold(
+        (f64::INFINITY, f64::NEG_INFINITY),
+        |(least, greatest), c| {
+            let third = (c[3] - c[0]) - 3.0 * (c[2] - c[1]);
+            (third.min(least), third.max(greatest))
+        },
+    );
     let scale = 6.0 * axis.per_unit * axis.per_unit;
+    let cube = scale * axis.per_unit;
     Jet {
         value,
         slope,
         bend: scale * ((1.0 - f) * second.0 + f * second.1),
-        change: scale * axis.per_unit * reach * third,
+        third: (cube * third.0, cube * third.1),
     }
 }
 
@@ -389,8 +392,10 @@ mod tests {
                 let y = x + f64::from(j) * 0.0099;
                 let second = (at(y - 1e-3) - 2.0 * at(y) + at(y + 1e-3)) / 1e-6;
                 // A difference quotient of values that are right to ε.
+                let (low, high) = ((y - x) * jet.third.0, (y - x) * jet.third.1);
                 assert!(
-                    (second - jet.bend).abs() <= jet.change + 1e-6,
+                    second - jet.bend >= low.min(high) - 1e-6
+                        && second - jet.bend <= low.max(high) + 1e-6,
                     "{second} at {y}: {jet:?}"
                 );
             }
