@@ -3,6 +3,7 @@
 pub mod chart;
 pub mod cli;
 pub mod isoradial;
+mod lanes;
 pub mod orbit;
 pub mod output;
 pub mod render;

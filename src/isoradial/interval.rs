@@ -1,30 +1,32 @@
 //! Intervals of real numbers, each its middle and its radius.
 
+use crate::lanes::Real;
+
 /// The numbers within `radius` of `middle`.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Interval {
+pub struct Interval<T = f64> {
     /// Its middle.
-    pub middle: f64,
+    pub middle: T,
     /// Half its width.
-    pub radius: f64,
+    pub radius: T,
 }
 
-impl Interval {
-    #[inline]
-    pub(super) fn between((least, greatest): (f64, f64)) -> Self {
+impl<T: Real> Interval<T> {
+    #[inline(always)]
+    pub(super) fn between([least, greatest]: [T; 2]) -> Self {
         Self {
-            middle: 0.5 * (least + greatest),
-            radius: 0.5 * (greatest - least),
+            middle: (least + greatest) * 0.5,
+            radius: (greatest - least) * 0.5,
         }
     }
 
     /// The largest size of a number in it.
-    #[inline]
-    pub fn most(self) -> f64 {
+    #[inline(always)]
+    pub(crate) fn most(self) -> T {
         self.middle.abs() + self.radius
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn plus(self, other: Self) -> Self {
         Self {
             middle: self.middle + other.middle,
@@ -32,15 +34,15 @@ impl Interval {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn scaled(self, factor: f64) -> Self {
         Self {
-            middle: factor * self.middle,
-            radius: factor.abs() * self.radius,
+            middle: self.middle * factor,
+            radius: self.radius * factor.abs(),
         }
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn times(self, other: Self) -> Self {
         let (a, b) = (self.middle.abs(), other.middle.abs());
         Self {
@@ -50,11 +52,11 @@ impl Interval {
     }
 
     /// The numbers' squares.
-    #[inline]
+    #[inline(always)]
     pub(super) fn squared(self) -> Self {
         Self {
             middle: self.middle * self.middle,
-            radius: self.radius * (2.0 * self.middle.abs() + self.radius),
+            radius: self.radius * (self.middle.abs() * 2.0 + self.radius),
         }
     }
 }

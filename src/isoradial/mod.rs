@@ -48,11 +48,10 @@ mod solve;
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use crate::orbit::path::SweptAngles;
-pub use interval::Interval;
 use nodes::Nodes;
-pub use open::{Band, Bands, Open, OpenEdge, OpenEdges, Uniform};
-pub use patch::{Bent, Patch, Side};
-pub use picture::{Line, Picture, Spot};
+pub(crate) use open::{Band, EdgeOf, Found, MOST_BANDS, MOST_EDGES, Open};
+pub(crate) use patch::{Bent, Patch};
+pub(crate) use picture::{Line, Picture};
 use piece::{Piece, thickness};
 pub use range::{Bundle, Verdict};
 pub use sight::Sight;

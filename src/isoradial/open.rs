@@ -1,193 +1,159 @@
 //! Which curves are open over a patch: neither wholly on one side of it nor on the other.
 
-use super::patch::{Bent, Patch, Side};
-use super::picture::{Line, Picture};
+use super::patch::{Bent, Patch};
+use super::picture::{Line, Picture, Spot};
 use super::{Edge, Isoradials};
+use crate::lanes::Real;
 
 /// As many orders as there are at most.
-const MOST: usize = super::MOST_ORDERS as usize;
+pub(crate) const MOST_BANDS: usize = super::MOST_ORDERS as usize;
+
+/// As many edges.
+pub(crate) const MOST_EDGES: usize = 2 * MOST_BANDS;
 
 /// Which edges are open over a patch. Those of a patch within it are among them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Open {
+pub(crate) struct Open {
     quarter: usize,
     /// Two bits for each piece of the quarter turn: its outer edge, its inner edge.
     edges: u32,
 }
 
-/// The edges that are open over one patch, order by order.
-#[derive(Debug, Clone)]
-pub struct OpenEdges {
-    edges: [OpenEdge; 2 * MOST],
-    count: usize,
+/// An edge of a piece of a quarter turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct EdgeOf {
+    /// Which piece.
+    pub(crate) piece: usize,
+    /// Which edge.
+    pub(crate) edge: Edge,
 }
 
-/// One of them.
-#[derive(Debug, Clone, Copy)]
-pub struct OpenEdge {
-    /// Which of the quarter turn's pieces.
-    pub piece: usize,
-    /// Which of its edges.
-    pub edge: Edge,
-    /// The edge over the patch.
-    pub bent: Bent,
+/// What several patches have of edges: a bit for each patch.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct Sifted {
+    /// All its rays meet the disk.
+    pub(crate) hit: u32,
+    /// None of them does.
+    pub(crate) miss: u32,
 }
 
 /// One order's band between its two edges, of which one at least is given: the rays are in it that are on the right
 /// side of those.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Band {
+pub(crate) struct Band<T = f64> {
     /// The outer edge: within the band is `g ≥ 0`.
-    pub outer: Option<Line>,
+    pub(crate) outer: Option<Line<T>>,
     /// The inner edge: within the band is `g ≤ 0`.
-    pub inner: Option<Line>,
+    pub(crate) inner: Option<Line<T>>,
 }
 
-/// What all rays of a patch have in common over which no edge is open.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Uniform {
-    /// They meet the disk.
-    Hit,
-    /// They do not.
-    Miss,
-}
-
-impl OpenEdges {
-    /// None at all.
-    pub fn none() -> Self {
-        let edge = OpenEdge {
-            piece: 0,
-            edge: Edge::Outer,
-            bent: Bent::default(),
-        };
+impl Open {
+    /// Every edge of a quarter turn.
+    pub(crate) fn all(quarter: usize) -> Self {
         Self {
-            edges: [edge; 2 * MOST],
-            count: 0,
+            quarter,
+            edges: (1 << MOST_EDGES) - 1,
         }
     }
 
-    /// The edges: each piece's outer one before its inner one.
-    pub fn edges(&self) -> &[OpenEdge] {
-        &self.edges[..self.count]
+    /// None of a quarter turn.
+    pub(crate) fn none(quarter: usize) -> Self {
+        Self { quarter, edges: 0 }
     }
 
-    /// The edges of each piece, tangents in the patch's centre.
-    pub fn bands(&self) -> Bands {
-        Bands::of(self.edges(), |open| open.bent.line)
+    /// And this one.
+    pub(crate) fn with(mut self, of: EdgeOf) -> Self {
+        self.edges |= 1 << of.bit();
+        self
+    }
+
+    /// The quarter turn, 0 or 1.
+    pub(crate) fn quarter(self) -> usize {
+        self.quarter
     }
 }
 
-/// Some orders' bands.
-#[derive(Debug, Clone, Copy)]
-pub struct Bands {
-    bands: [Band; MOST],
-    count: usize,
+impl EdgeOf {
+    fn bit(self) -> usize {
+        2 * self.piece
+            + match self.edge {
+                Edge::Outer => 0,
+                Edge::Inner => 1,
+            }
+    }
 }
 
-impl Bands {
-    fn of(edges: &[OpenEdge], line: impl Fn(&OpenEdge) -> Line) -> Self {
-        let mut bands = Self {
-            bands: [Band::default(); MOST],
-            count: 0,
-        };
-        let mut last = None;
-        for open in edges {
-            if last != Some(open.piece) {
-                last = Some(open.piece);
-                bands.count += 1;
-            }
-            let band = &mut bands.bands[bands.count - 1];
-            match open.edge {
-                Edge::Outer => band.outer = Some(line(open)),
-                Edge::Inner => band.inner = Some(line(open)),
-            }
-        }
-        bands
-    }
-
-    /// The bands.
-    pub fn as_slice(&self) -> &[Band] {
-        &self.bands[..self.count]
-    }
+/// What is told of the edges that are open over patches: a trait, for the instructions of a closure's caller are not
+/// always its own.
+pub(crate) trait Found<T> {
+    /// An edge is open over those of the patches that there is a bit for.
+    fn found(&mut self, of: EdgeOf, patches: u32, bent: &Bent<T>);
 }
 
 impl Isoradials {
-    /// What is open over `patch`, into `edges`; `before` is what was open over a patch that it is part of.
-    ///
-    /// # Errors
-    /// What its rays have in common, where nothing is open.
-    #[inline]
-    pub fn patched(
+    /// What is open over patches of one quarter turn, of those that `active` has a bit for: `found` is told each edge
+    /// that is, with a bit for each patch over which it is, each piece's outer edge before its inner one. `before` are
+    /// the edges that were open over a patch that they are part of.
+    #[inline(always)]
+    pub(crate) fn sift<T: Real>(
         &self,
-        patch: &Patch,
-        before: Option<Open>,
-        edges: &mut OpenEdges,
-    ) -> Result<Open, Uniform> {
+        patch: &Patch<T>,
+        active: u32,
+        before: Open,
+        found: &mut impl Found<T>,
+    ) -> Sifted {
         let pieces = self.quarter(patch.quarter());
-        let mut asked = before
-            .filter(|open| open.quarter == patch.quarter())
-            .map_or((1 << (2 * pieces.len())) - 1, |open| open.edges);
-        let mut open = 0;
-        edges.count = 0;
+        let none = patch.none();
+        let mut asked = before.edges & ((1 << (2 * pieces.len())) - 1);
+        let (mut hit, mut open) = (0, 0);
         while asked != 0 {
-            let index = asked.trailing_zeros() as usize / 2;
-            let both = (asked >> (2 * index)) & 3;
-            asked &= !(3 << (2 * index));
-            if !patch.overlaps(&pieces[index]) {
+            let piece = asked.trailing_zeros() as usize / 2;
+            let both = asked >> (2 * piece);
+            asked &= !(3 << (2 * piece));
+            let mut within = active & !hit & patch.overlaps(&pieces[piece]);
+            if within == 0 {
                 continue;
             }
-            let mut left = 0;
-            let mut missed = false;
-            for (bit, edge, outside, inside) in [
-                (1, Edge::Outer, Side::Below, Side::Above),
-                (2, Edge::Inner, Side::Above, Side::Below),
-            ] {
-                if both & bit == 0 {
-                    continue;
-                }
-                let bent = patch.bent(&pieces[index], edge);
-                let side = patch.side(&bent);
-                if side == Some(outside) {
-                    missed = true;
-                    break;
-                }
-                if side != Some(inside) {
-                    edges.edges[edges.count] = OpenEdge {
-                        piece: index,
-                        edge,
-                        bent,
-                    };
-                    edges.count += 1;
-                    left |= bit;
-                }
+            let mut outer = None;
+            let mut unsure = [0; 2];
+            if both & 1 != 0 {
+                let bent = patch.bent(&pieces[piece], Edge::Outer);
+                let [least, greatest] = patch.range(&bent);
+                within &= !greatest.less(none);
+                unsure[0] = !none.less(least);
+                outer = Some(bent);
             }
-            if missed {
-                edges.count -= left.count_ones() as usize;
-            } else if left == 0 {
-                return Err(Uniform::Hit);
-            } else {
-                open |= left << (2 * index);
+            let mut inner = None;
+            if both & 2 != 0 && within != 0 {
+                let bent = patch.bent(&pieces[piece], Edge::Inner);
+                let [least, greatest] = patch.range(&bent);
+                within &= !none.less(least);
+                unsure[1] = !greatest.less(none);
+                inner = Some(bent);
             }
+            if let (Some(bent), true) = (&outer, within & unsure[0] != 0) {
+                let edge = Edge::Outer;
+                found.found(EdgeOf { piece, edge }, within & unsure[0], bent);
+            }
+            if let (Some(bent), true) = (&inner, within & unsure[1] != 0) {
+                let edge = Edge::Inner;
+                found.found(EdgeOf { piece, edge }, within & unsure[1], bent);
+            }
+            let unsure = within & (unsure[0] | unsure[1]);
+            hit |= within & !unsure;
+            open |= unsure;
         }
-        if open == 0 {
-            Err(Uniform::Miss)
-        } else {
-            Ok(Open {
-                quarter: patch.quarter(),
-                edges: open,
-            })
+        Sifted {
+            hit,
+            miss: active & !hit & !open,
         }
     }
 }
 
 impl Picture<'_> {
-    /// The bands of the edges that are open over a patch, tangents at a place in it.
-    #[inline]
-    pub fn bands_at(&self, place: (f64, f64), edges: &[OpenEdge]) -> Bands {
-        let Some(spot) = self.spot(place, None) else {
-            return Bands::of(&[], |_| Line::default());
-        };
-        let pieces = self.curves.quarter(spot.quarter);
-        Bands::of(edges, |open| spot.line(&pieces[open.piece], open.edge))
+    /// An edge's tangent at a place.
+    #[inline(always)]
+    pub(crate) fn tangent<T: Real>(&self, spot: &Spot<T>, of: EdgeOf) -> Line<T> {
+        spot.line(&self.curves.quarter(spot.quarter)[of.piece], of.edge)
     }
 }

@@ -31,51 +31,48 @@ use super::Edge;
 use super::interval::Interval;
 use super::picture::{Line, Picture, Spot};
 use super::piece::Piece;
+use crate::lanes::Real;
 
-/// The rays of a rectangle of the picture that meet the disk's plane in one and the same quarter turn.
+/// The rays of a rectangle of the picture that meet the disk's plane in one and the same quarter turn; or of several
+/// rectangles of the same size, in the same one.
 #[derive(Debug, Clone, Copy)]
-pub struct Patch {
+pub(crate) struct Patch<T = f64> {
     /// Its centre.
-    spot: Spot,
+    spot: Spot<T>,
     /// Pixels from the centre to its sides.
     half: [f64; 2],
+    /// r: all bounds are right where it is no more than [`WIDEST`],
+    spread: T,
+    /// and the least of `|D₁ cos θ|`, above 0 where all rays are in the quarter turn.
+    least: T,
     /// How far x is from the centre's at most.
-    reach: f64,
-    /// `z/s − κ_c`.
-    heights: (f64, f64),
+    reach: T,
+    /// The least and the greatest `z/s − κ_c`.
+    heights: [T; 2],
     /// What a value may be off by through rounding, but for what h makes of it.
-    rounding: f64,
+    rounding: T,
     /// s, at most.
-    s_most: f64,
+    s_most: T,
     /// `s₀³/s³ − 1`, at most.
-    nearer: f64,
+    nearer: T,
     /// `|d × ∂p|/s₀` for a pixel's d.
-    turned: f64,
+    turned: T,
     /// `x̂` and `1 − x̂`.
-    share: Interval,
-    complement: Interval,
+    share: Interval<T>,
+    complement: Interval<T>,
     /// v².
-    turn: Interval,
+    turn: Interval<T>,
 }
 
 /// One edge over a patch: `line` with `−½ bend (s∂θ·d)²` for its quadratic part, and what is not quadratic.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Bent {
+pub(crate) struct Bent<T = f64> {
     /// At the centre.
-    pub line: Line,
+    pub(crate) line: Line<T>,
     /// By how much the value is off at most, through rounding.
-    rounding: f64,
+    rounding: T,
     /// B.
-    pub bend: Interval,
-}
-
-/// A side of an edge.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
-    /// `g ≥ 0`.
-    Above,
-    /// `g < 0`.
-    Below,
+    pub(crate) bend: Interval<T>,
 }
 
 /// Share of its terms by which a value may be off through rounding: some ε of each, with room.
@@ -87,137 +84,175 @@ const WIDEST: f64 = 0.25;
 impl Picture<'_> {
     /// The rays of a rectangle of the picture, its sides in pixels from the left and from the top. None where they
     /// are in both quarter turns, or all about the hole's direction or the one away from it.
-    #[inline]
-    pub fn patch(&self, columns: (f64, f64), rows: (f64, f64)) -> Option<Patch> {
-        self.patch_of(columns, rows, None)
+    pub(crate) fn patch(&self, columns: (f64, f64), rows: (f64, f64)) -> Option<Patch> {
+        let (centre, half) = middle(columns, rows);
+        let patch = self.patch_about(centre.0, centre.1, half, self.quarter_at(centre));
+        (patch.sound(self) == 1).then_some(patch)
     }
 
     /// The same of those rays of a rectangle that meet the plane in one of the quarter turns, 0 or 1; with the curves
     /// continued a little beyond it. None too where that is no little way, close to the disk's plane.
-    pub fn patch_in_quarter(
+    pub(crate) fn patch_in_quarter(
         &self,
         columns: (f64, f64),
         rows: (f64, f64),
         quarter: usize,
     ) -> Option<Patch> {
-        self.patch_of(columns, rows, Some(quarter))
+        let (centre, half) = middle(columns, rows);
+        let patch = self.patch_about(centre.0, centre.1, half, quarter);
+        // In the disk's plane x is 0 or 1 all over the quarter turn.
+        let little = self.n == 0.0 || patch.least > -0.5 * self.n;
+        (patch.spread <= WIDEST && little).then_some(patch)
     }
 
     /// Where in a rectangle the rays meet the plane at a quarter turn, D = 0: positive in the first one.
-    pub fn border(&self, columns: (f64, f64), rows: (f64, f64)) -> Line {
-        let (x, y) = (
-            self.view.x_at(0.5 * (columns.0 + columns.1)),
-            self.view.y_at(0.5 * (rows.0 + rows.1)),
-        );
+    pub(crate) fn border(&self, columns: (f64, f64), rows: (f64, f64)) -> Line {
+        let (centre, _) = middle(columns, rows);
+        let view = self.view();
+        let (x, y) = (view.x_at(centre.0), view.y_at(centre.1));
         let [right, down] = self.per_pixel;
         Line {
-            value: self.d * self.view.ta().at(x, y),
+            value: self.d * view.ta().at(x, y),
             per_column: self.d * right.ta,
             per_row: self.d * down.ta,
         }
     }
 
-    #[inline]
-    fn patch_of(
+    /// The rays of rectangles about (column, row), so many pixels to either side, in a quarter turn: see
+    /// [`Patch::sound`].
+    #[inline(always)]
+    pub(crate) fn patch_about<T: Real>(
         &self,
-        columns: (f64, f64),
-        rows: (f64, f64),
-        wanted: Option<usize>,
-    ) -> Option<Patch> {
-        let centre = (0.5 * (columns.0 + columns.1), 0.5 * (rows.0 + rows.1));
-        let spot = self.spot(centre, wanted)?;
-        let half = [0.5 * (columns.1 - columns.0), 0.5 * (rows.1 - rows.0)];
+        column: T,
+        row: T,
+        half: [f64; 2],
+        quarter: usize,
+    ) -> Patch<T> {
+        let spot = self.spot(column, row, quarter);
         let [right, down] = self.per_pixel;
         let span = |right: f64, down: f64| right.abs() * half[0] + down.abs() * half[1];
         let (reach_a, reach_b) = (span(right.ta, down.ta), span(right.tb, down.tb));
-        let inverse = 1.0 / spot.s;
-        let r = (reach_a * reach_a + reach_b * reach_b).sqrt() * inverse;
-        if r > WIDEST {
-            return None;
-        }
-        let spread = r * (1.0 + 0.25 * r * r) + 4.0 * f64::EPSILON;
+        let inverse = spot.inverse;
+        let r = inverse * (reach_a * reach_a + reach_b * reach_b).sqrt();
+        let angle = r * (r * r * 0.25 + 1.0) + 4.0 * f64::EPSILON;
         let (n, d) = (self.n, self.d.abs());
-        let least = spot.size - d * spread;
-        match wanted {
-            None if least <= 0.0 && d > 0.0 => return None,
-            // In the disk's plane x is 0 or 1 all over the quarter turn.
-            Some(_) if n > 0.0 && least <= -0.5 * n => return None,
-            _ => {}
-        }
-        let (share, turn) = if n > 0.0 {
-            let nearest = 1.0 / (n + least);
+        let none = r.all(0.0);
+        let least = spot.size - angle * d;
+        let (share, turn, reach) = if n > 0.0 {
+            let nearest = angle * d / (least + n);
             // By which share a quotient may be larger than in the centre.
-            let more = d * spread * nearest + ROUNDING;
-            (
-                Interval {
-                    middle: spot.share,
-                    radius: spot.share * more,
-                },
-                Interval {
-                    middle: spot.turn,
-                    radius: d * spread * nearest + spot.turn.abs() * more,
-                },
-            )
+            let more = nearest + ROUNDING;
+            let share = Interval {
+                middle: spot.share,
+                radius: spot.share * more,
+            };
+            let turn = Interval {
+                middle: spot.turn,
+                radius: nearest + spot.turn.abs() * more,
+            };
+            (share, turn, share.most() * turn.most() * angle + ROUNDING)
         } else {
-            Default::default()
+            let nothing = Interval {
+                middle: none,
+                radius: none,
+            };
+            (nothing, nothing, none)
         };
-        let (z, s_most) = (span(right.z, down.z), spot.s * (1.0 + r));
+        let (z, s_most) = (span(right.z, down.z), spot.s * (r + 1.0));
         let kappa = spot.z * inverse;
         let height = kappa - spot.critical;
-        // κ s₀/s is within the first part of κ, s₀/s within the share r/(1 − r) of 1.
-        let height_reach = (z * inverse + r * kappa.abs()) / (1.0 - r)
-            + ROUNDING * (kappa.abs() + spot.critical.abs());
-        Some(Patch {
+        // κ s₀/s is within the first part of κ, s₀/s within the share r/(1 − r) ≤ r + 4r²/3 of 1.
+        let height_reach = (inverse * z + r * kappa.abs()) * (r + r * r * (4.0 / 3.0) + 1.0)
+            + (kappa.abs() + spot.critical.abs()) * ROUNDING;
+        Patch {
             spot,
             half,
-            reach: share.most() * turn.most() * spread + if n > 0.0 { ROUNDING } else { 0.0 },
-            heights: (height - height_reach, height + height_reach),
-            rounding: ROUNDING * (spot.z.abs() + z + s_most * spot.critical.abs()),
+            spread: r,
+            least,
+            reach,
+            heights: [height - height_reach, height + height_reach],
+            rounding: (spot.z.abs() + z + s_most * spot.critical.abs()) * ROUNDING,
             s_most,
-            nearer: 3.0 * r + 12.0 * r * r,
+            nearer: r * 3.0 + r * r * 12.0,
             complement: Interval {
-                middle: 1.0 - share.middle,
+                middle: -(share.middle - 1.0),
                 ..share
             },
-            turned: (right.ta * down.tb - right.tb * down.ta).abs() * inverse,
+            turned: inverse * (right.ta * down.tb - right.tb * down.ta).abs(),
             share,
             turn: turn.squared(),
-        })
+        }
     }
 }
 
-impl Patch {
+/// A rectangle's centre, and how far it reaches to either side.
+fn middle(columns: (f64, f64), rows: (f64, f64)) -> ((f64, f64), [f64; 2]) {
+    (
+        (0.5 * (columns.0 + columns.1), 0.5 * (rows.0 + rows.1)),
+        [0.5 * (columns.1 - columns.0), 0.5 * (rows.1 - rows.0)],
+    )
+}
+
+impl<T: Real> Patch<T> {
     /// Which quarter turn, 0 or 1.
-    pub fn quarter(&self) -> usize {
+    pub(crate) fn quarter(&self) -> usize {
         self.spot.quarter
     }
 
-    /// Pixels from the centre to the sides.
-    pub fn half(&self) -> [f64; 2] {
-        self.half
+    /// A bit for each rectangle: whether all its rays are in the quarter turn, and not all about the hole's direction
+    /// or the one away from it.
+    #[inline(always)]
+    pub(crate) fn sound(&self, picture: &Picture<'_>) -> u32 {
+        let (none, widest) = (
+            self.spread.all(0.0),
+            self.spread.all(WIDEST * (1.0 + f64::EPSILON)),
+        );
+        let narrow = self.spread.less(widest);
+        if picture.d == 0.0 {
+            // On the disk's axis all rays meet the plane at a quarter turn, the first one's end.
+            return if self.spot.quarter == 0 { narrow } else { 0 };
+        }
+        narrow & none.less(self.least)
+    }
+
+    /// As many zeros as there are rectangles.
+    #[inline(always)]
+    pub(super) fn none(&self) -> T {
+        self.spread.all(0.0)
     }
 
     /// s∂θ at the centre, for each pixel to the right and downwards.
-    pub fn across(&self) -> [f64; 2] {
+    pub(crate) fn across(&self) -> [T; 2] {
         self.spot.across
     }
 
-    /// Whether some ray of the patch has the slope of some ray that meets the disk in a piece.
-    #[inline]
-    pub(super) fn overlaps(&self, piece: &Piece) -> bool {
-        !(self.heights.1 < piece.lowest || self.heights.0 > piece.highest)
+    /// Pixels from the centre to the sides.
+    pub(crate) fn half(&self) -> [f64; 2] {
+        self.half
+    }
+
+    /// A bit for each rectangle: whether some ray has the slope of some ray that meets the disk in a piece.
+    #[inline(always)]
+    pub(super) fn overlaps(&self, piece: &Piece) -> u32 {
+        let [least, greatest] = self.heights;
+        !(greatest.less(least.all(piece.lowest)) | least.all(piece.highest).less(least))
     }
 
     /// One edge of one piece of [`Self::quarter`], over the patch.
-    #[inline]
-    pub(super) fn bent(&self, piece: &Piece, edge: Edge) -> Bent {
+    #[inline(always)]
+    pub(super) fn bent(&self, piece: &Piece, edge: Edge) -> Bent<T> {
         let spot = &self.spot;
         let jet = piece.jet(edge, spot.x, self.reach);
         let (line, h) = spot.line_of(piece, jet.value, jet.slope);
-        if h.is_infinite() {
+        if spot.meets_itself(piece) {
+            let none = h.all(0.0);
             return Bent {
                 line,
-                ..Bent::default()
+                rounding: none,
+                bend: Interval {
+                    middle: none,
+                    radius: none,
+                },
             };
         }
         let third = Interval::between(jet.third);
@@ -227,9 +262,10 @@ impl Patch {
         };
         // K + K_θθ in the centre, and its derivative over the patch but for the factor x̂ v.
         let (x, v2) = (spot.share, self.turn.middle);
+        let both = self.turn.plus(self.complement);
         let (middle, rate) = if piece.has_pole() {
-            let middle = jet.value + (1.0 - x) * jet.slope + x * v2 * jet.bend;
-            let rate = bend.times(self.turn.plus(self.complement)).scaled(3.0);
+            let middle = jet.value + self.complement.middle * jet.slope + x * v2 * jet.bend;
+            let rate = bend.times(both).scaled(3.0);
             (middle, rate.plus(third.times(self.share.times(self.turn))))
         } else {
             let sign = if spot.quarter == 0 { 1.0 } else { -1.0 };
@@ -237,66 +273,59 @@ impl Patch {
                 middle: jet.slope,
                 radius: bend.most() * self.reach,
             };
-            let twice = self.turn.scaled(2.0).plus(self.complement);
-            let middle = jet.value + sign * x * twice.middle * jet.slope + x * x * v2 * jet.bend;
-            let first = slope.times(self.turn.plus(self.complement)).scaled(6.0);
+            let twice = self.turn.plus(both);
+            let middle = jet.value + x * twice.middle * jet.slope * sign + x * x * v2 * jet.bend;
+            let first = slope.times(both).scaled(6.0);
             let second = bend.times(self.share.times(twice)).scaled(3.0 * sign);
             let last = third.times(self.share.squared().times(self.turn));
             (middle, first.plus(second).plus(last))
         };
-        let middle = spot.critical + middle;
-        let change = rate.most() * self.reach + ROUNDING * (spot.critical.abs() + middle.abs());
-        let inverse = 1.0 / spot.s;
+        let middle = middle + spot.critical;
+        let change = rate.most() * self.reach + (middle.abs() + spot.critical.abs()) * ROUNDING;
         Bent {
             line,
-            rounding: self.rounding + ROUNDING * self.s_most * h.abs(),
+            rounding: self.rounding + self.s_most * h.abs() * ROUNDING,
             bend: Interval {
-                middle: middle * inverse,
-                radius: inverse * (change * (1.0 + self.nearer) + middle.abs() * self.nearer),
+                middle: middle * spot.inverse,
+                radius: spot.inverse * (change * (self.nearer + 1.0) + middle.abs() * self.nearer),
             },
         }
     }
 
     /// Half the largest square of `s∂θ·d`.
-    #[inline]
-    fn half_square(&self) -> f64 {
+    #[inline(always)]
+    fn half_square(&self) -> T {
         let [right, down] = self.spot.across;
         let most = right.abs() * self.half[0] + down.abs() * self.half[1];
-        0.5 * most * most
+        most * most * 0.5
     }
 
-    /// On which side of an edge the whole patch is.
-    #[inline]
-    pub fn side(&self, bent: &Bent) -> Option<Side> {
+    /// The least and the greatest g of an edge over the patch.
+    #[inline(always)]
+    pub(super) fn range(&self, bent: &Bent<T>) -> [T; 2] {
         let line = &bent.line;
         let tilt = line.per_column.abs() * self.half[0] + line.per_row.abs() * self.half[1];
-        let (bend, square) = (bent.bend, self.half_square());
-        let below = tilt + (bend.middle + bend.radius).max(0.0) * square + bent.rounding;
-        let above = tilt + (bend.radius - bend.middle).max(0.0) * square + bent.rounding;
-        if line.value - below >= 0.0 {
-            Some(Side::Above)
-        } else if line.value + above < 0.0 {
-            Some(Side::Below)
-        } else {
-            None
-        }
+        let (bend, square, none) = (bent.bend, self.half_square(), tilt.all(0.0));
+        let below = tilt + (bend.radius + bend.middle).larger(none) * square + bent.rounding;
+        let above = tilt + (bend.radius - bend.middle).larger(none) * square + bent.rounding;
+        [line.value - below, line.value + above]
     }
 
     /// What of an edge over the patch is not linear, at most.
-    #[inline]
-    pub fn bend(&self, bent: &Bent) -> f64 {
+    #[inline(always)]
+    pub(crate) fn bend(&self, bent: &Bent<T>) -> T {
         bent.bend.most() * self.half_square() + bent.rounding
     }
 
     /// What of an edge over the patch is not quadratic, at most.
-    #[inline]
-    pub fn doubt(&self, bent: &Bent) -> f64 {
+    #[inline(always)]
+    pub(crate) fn doubt(&self, bent: &Bent<T>) -> T {
         bent.bend.radius * self.half_square() + bent.rounding
     }
 
     /// By how much each part of an edge's gradient is another than in the centre, at most.
-    #[inline]
-    pub fn turning(&self, bent: &Bent) -> [f64; 2] {
+    #[inline(always)]
+    pub(crate) fn turning(&self, bent: &Bent<T>) -> [T; 2] {
         let [right, down] = self.spot.across;
         let [columns, rows] = self.half;
         let most = bent.bend.most() * (right.abs() * columns + down.abs() * rows);
@@ -308,12 +337,12 @@ impl Patch {
 
     /// By how much an edge is off its tangent over a pixel of the patch, at most, its tangent being that in the pixel's
     /// centre.
-    #[inline]
-    pub fn bend_of_pixel(&self, bent: &Bent) -> f64 {
+    #[inline(always)]
+    pub(crate) fn bend_of_pixel(&self, bent: &Bent<T>) -> T {
         let [right, down] = self.spot.across;
         let [columns, rows] = self.half;
-        let most = 0.5 * (right.abs() + down.abs() + self.turned * (columns + rows));
-        0.5 * bent.bend.most() * most * most
+        let most = right.abs() + down.abs() + self.turned * (columns + rows);
+        bent.bend.most() * most * most * 0.125
     }
 }
 
@@ -377,7 +406,7 @@ mod tests {
                                 builtin.name()
                             );
                             assert!(radius <= patch.doubt(&bent) || radius.is_nan());
-                            let there = picture.spot(at, Some(patch.quarter())).unwrap();
+                            let there = picture.spot(at.0, at.1, patch.quarter());
                             let there = there.line(piece, edge);
                             let [columns, rows] = patch.turning(&bent);
                             assert!(

@@ -18,13 +18,14 @@
 
 use super::piece::Piece;
 use super::{Edge, Isoradials};
-use crate::scene::View;
+use crate::lanes::Real;
+use crate::scene::{Affine, View};
 
 /// The rays of a picture, in pixels from its left and its top.
 #[derive(Debug, Clone, Copy)]
 pub struct Picture<'a> {
-    pub(super) view: &'a View,
     pub(super) curves: &'a Isoradials,
+    view: &'a View,
     /// `|n·p̂|`.
     pub(super) n: f64,
     /// D₁, D over `t_a`.
@@ -43,37 +44,41 @@ pub(super) struct Change {
 
 /// One ray of a picture, and how rays change from pixel to pixel about it.
 #[derive(Debug, Clone, Copy)]
-pub struct Spot {
+pub(crate) struct Spot<T = f64> {
     /// In which quarter turn it meets the disk's plane, 0 or 1.
     pub(super) quarter: usize,
-    pub(super) z: f64,
+    /// Whether the camera stands in the disk's plane: x is 0 or 1 all over the quarter turn.
+    pub(super) within_plane: bool,
+    pub(super) z: T,
     /// `z − κ_c s`.
-    pub(super) excess: f64,
-    pub(super) s: f64,
-    pub(super) x: f64,
+    pub(super) excess: T,
+    pub(super) s: T,
+    /// 1/s.
+    pub(super) inverse: T,
+    pub(super) x: T,
     /// `|D₁ cos θ|`; less than 0 beyond the quarter turn's end.
-    pub(super) size: f64,
+    pub(super) size: T,
     /// x̂.
-    pub(super) share: f64,
+    pub(super) share: T,
     /// v.
-    pub(super) turn: f64,
+    pub(super) turn: T,
     /// `∂s`, for each pixel to the right and downwards.
-    pub(super) along: [f64; 2],
+    along: [T; 2],
     /// `s∂θ`.
-    pub(super) across: [f64; 2],
+    pub(super) across: [T; 2],
     pub(super) critical: f64,
     slope: [f64; 2],
 }
 
 /// `g` of one edge about a place: its value there, and its gradient.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Line {
+pub struct Line<T = f64> {
     /// At the place.
-    pub value: f64,
+    pub value: T,
     /// For each pixel to the right.
-    pub per_column: f64,
+    pub per_column: T,
     /// For each pixel downwards.
-    pub per_row: f64,
+    pub per_row: T,
 }
 
 impl<'a> Picture<'a> {
@@ -82,8 +87,8 @@ impl<'a> Picture<'a> {
         let pixel = view.pixel_side();
         let (z, ta, tb) = (view.z(), view.ta(), view.tb());
         Self {
-            view,
             curves,
+            view,
             n: view.n_p().abs(),
             d: view.plane_slope(),
             // Rows count downwards, Y upwards.
@@ -102,82 +107,116 @@ impl<'a> Picture<'a> {
         }
     }
 
-    /// The ray at a place; in `quarter`, if that is given, or where its curves' continuation would have it. None for a
-    /// ray straight at the hole or away from it.
+    /// The curves.
+    pub fn curves(&self) -> &'a Isoradials {
+        self.curves
+    }
+
+    /// The view.
+    pub fn view(&self) -> &'a View {
+        self.view
+    }
+
+    /// The quarter turn in which the ray at a place meets the disk's plane.
     #[inline]
-    pub(super) fn spot(&self, (column, row): (f64, f64), quarter: Option<usize>) -> Option<Spot> {
-        let (x, y) = (self.view.x_at(column), self.view.y_at(row));
-        let ray = self.view.ray_at(x, y);
-        let s = ray.transverse();
-        if s <= 0.0 {
-            return None;
-        }
-        let inverse = 1.0 / s;
-        let (ca, cb) = (ray.ta * inverse, ray.tb * inverse);
+    pub(crate) fn quarter_at(&self, (column, row): (f64, f64)) -> usize {
+        let ta = self.part(self.view.ta(), column, row);
+        usize::from(self.d * ta < 0.0)
+    }
+
+    #[inline(always)]
+    fn part<T: Real>(&self, affine: Affine, column: T, row: T) -> T {
+        let x = (column * 2.0 - f64::from(self.view.width())) * (0.5 * self.view.pixel_side());
+        let y = -(row * 2.0 - f64::from(self.view.height())) * (0.5 * self.view.pixel_side());
+        x * affine.per_x + affine.at_centre + y * affine.per_y
+    }
+
+    /// The ray at a place, and its curves in one of the quarter turns, or their continuation if that is not its own.
+    /// All that a ray straight at the hole or away from it has of s is 0.
+    #[inline(always)]
+    pub(crate) fn spot<T: Real>(&self, column: T, row: T, quarter: usize) -> Spot<T> {
+        let (z, ta, tb) = (
+            self.part(self.view.z(), column, row),
+            self.part(self.view.ta(), column, row),
+            self.part(self.view.tb(), column, row),
+        );
+        let s = (ta * ta + tb * tb).sqrt();
+        let inverse = s.all(1.0) / s;
+        let (ca, cb) = (ta * inverse, tb * inverse);
         let (n, d) = (self.n, self.d);
-        let quarter = quarter.unwrap_or(usize::from(d * ca < 0.0));
-        let size = d * if quarter == 0 { ca } else { -ca };
+        let size = ca * if quarter == 0 { d } else { -d };
         let (share, turn) = if n > 0.0 {
-            let inverse = 1.0 / (n + size);
-            (n * inverse, d * cb * inverse)
+            let inverse = s.all(1.0) / (size + n);
+            (inverse * n, cb * d * inverse)
         } else {
-            // The camera stands in the disk's plane: x is 0 or 1 all over the quarter turn.
-            (0.0, 0.0)
+            (s.all(0.0), s.all(0.0))
         };
         let critical = self.curves.critical();
         let [right, down] = self.per_pixel;
-        let along = |change: Change| ca * change.ta + cb * change.tb;
-        let across = |change: Change| ca * change.tb - cb * change.ta;
-        Some(Spot {
+        Spot {
             quarter,
-            z: ray.z,
-            excess: ray.z - critical * s,
+            within_plane: n == 0.0,
+            z,
+            excess: z - s * critical,
             s,
-            x: if quarter == 0 { share } else { 1.0 - share },
+            inverse,
+            x: if quarter == 0 {
+                share
+            } else {
+                s.all(1.0) - share
+            },
             size,
             share,
             turn,
-            along: [along(right), along(down)],
-            across: [across(right), across(down)],
+            along: [ca * right.ta + cb * right.tb, ca * down.ta + cb * down.tb],
+            across: [ca * right.tb - cb * right.ta, ca * down.tb - cb * down.ta],
             critical,
             slope: [right.z, down.z],
-        })
+        }
     }
 }
 
-impl Spot {
+impl<T: Real> Spot<T> {
     /// One edge of one piece of this ray's quarter turn.
-    #[inline]
-    pub(super) fn line(&self, piece: &Piece, edge: Edge) -> Line {
-        let (kept, slope) = piece.value_and_slope(edge, self.x);
+    #[inline(always)]
+    pub(super) fn line(&self, piece: &Piece, edge: Edge) -> Line<T> {
+        let [kept, slope] = piece.value_and_slope(edge, self.x);
         self.line_of(piece, kept, slope).0
     }
 
     /// The same, and h, from what is kept of the curve there and its slope.
-    #[inline]
-    pub(super) fn line_of(&self, piece: &Piece, kept: f64, slope: f64) -> (Line, f64) {
+    #[inline(always)]
+    pub(super) fn line_of(&self, piece: &Piece, kept: T, slope: T) -> (Line<T>, T) {
         let (h, turning) = if piece.has_pole() {
             let h = kept / self.x;
             (h, self.turn * (slope - h))
         } else {
             (kept, self.share * self.turn * slope)
         };
-        if h.is_infinite() {
-            // The camera stands in the disk's plane: at φ = 0 the ray is on one side of every curve, whatever it is.
+        if self.meets_itself(piece) {
             let line = Line {
                 value: -h,
-                ..Line::default()
+                per_column: h.all(0.0),
+                per_row: h.all(0.0),
             };
             return (line, h);
         }
-        let kappa = self.critical + h;
-        let gradient = |i: usize| self.slope[i] - kappa * self.along[i] - turning * self.across[i];
+        let kappa = h + self.critical;
+        let ([along_columns, along_rows], [across_columns, across_rows]) =
+            (self.along, self.across);
         let line = Line {
             value: self.excess - self.s * h,
-            per_column: gradient(0),
-            per_row: gradient(1),
+            per_column: -(kappa * along_columns - self.slope[0]) - turning * across_columns,
+            per_row: -(kappa * along_rows - self.slope[1]) - turning * across_rows,
         };
         (line, h)
+    }
+
+    /// Whether the ray meets the disk's plane at once: at φ = 0 it is on one side of every curve, whatever it is, and h
+    /// is infinite.
+    #[inline(always)]
+    pub(super) fn meets_itself(&self, piece: &Piece) -> bool {
+        self.within_plane && piece.has_pole()
     }
 }
 

@@ -3,6 +3,7 @@
 use super::Edge;
 use super::nodes::Nodes;
 use super::sight::Sight;
+use crate::lanes::Real;
 use crate::table::spline::{Jet, Scale, Stencil, bounds, jet, value, value_and_slope};
 
 /// A quarter turn of both curves, as splines in x of `h` (or `x h` where h has a pole).
@@ -66,7 +67,7 @@ impl Piece {
         // h′ = (f′ − h)/x = (x f′ − f)/x², and x f′ − f changes by x f″.
         let far = x + reach;
         let change = (x * jet.slope - jet.value).abs()
-            + far * (jet.bend.abs() + jet.third.0.abs().max(jet.third.1.abs()) * reach) * reach;
+            + far * (jet.bend.abs() + jet.third[0].abs().max(jet.third[1].abs()) * reach) * reach;
         (
             h,
             change / (least * least) * reach + 16.0 * f64::EPSILON * h.abs(),
@@ -90,13 +91,13 @@ impl Piece {
 
     /// One edge's spline about x, as far as `reach`.
     #[inline(always)]
-    pub(super) fn jet(&self, edge: Edge, x: f64, reach: f64) -> Jet {
+    pub(super) fn jet<T: Real>(&self, edge: Edge, x: T, reach: T) -> Jet<T> {
         jet(self.spline(edge), self.axis, x, reach)
     }
 
     /// Value and slope of one edge's spline at x.
     #[inline(always)]
-    pub(super) fn value_and_slope(&self, edge: Edge, x: f64) -> (f64, f64) {
+    pub(super) fn value_and_slope<T: Real>(&self, edge: Edge, x: T) -> [T; 2] {
         value_and_slope(self.spline(edge), self.axis, x)
     }
 

@@ -1,28 +1,43 @@
 //! Shares of a pixel's square: on one side of a line, and off several orders' bands.
 
-use crate::isoradial::{Band, Line};
+use crate::isoradial::{Band, Line, MOST_BANDS};
+use crate::lanes::Real;
 
 /// The share of a square of so many pixels' side on the side `value + per_column dx + per_row dy ≥ 0` of a line, dx and
 /// dy from its centre.
 ///
 /// With m and n the larger and the smaller of the two slopes' sizes the smaller part is a triangle, of the area
 /// `(½(m + n) − |value|)²/2mn`, where the line cuts off a corner, and a trapezoid, `½ − |value|/m`, where it does not.
-fn share_above(line: &Line, side: f64) -> f64 {
+#[inline(always)]
+fn share_above<T: Real>(line: &Line<T>, side: f64) -> T {
     let (value, per_column, per_row) = (
         line.value,
         line.per_column.abs() * side,
         line.per_row.abs() * side,
     );
-    let (most, least) = (per_column.max(per_row), per_column.min(per_row));
-    let (size, reach) = (value.abs(), 0.5 * (most + least));
-    let smaller = if size >= reach {
-        0.0
-    } else if size >= 0.5 * (most - least) {
-        (reach - size) * (reach - size) / (2.0 * most * least)
-    } else {
-        0.5 - size / most
-    };
-    if value >= 0.0 { 1.0 - smaller } else { smaller }
+    let (most, least) = (per_column.larger(per_row), per_column.smaller(per_row));
+    let (size, reach) = (value.abs(), (most + least) * 0.5);
+    let (none, all) = (value.all(0.0), value.all(1.0));
+    let corner = (reach - size) * (reach - size) / (most * 2.0 * least);
+    let trapezoid = -(size / most - 0.5);
+    let across = size.if_less((most - least) * 0.5, trapezoid, corner);
+    let smaller = size.if_less(reach, across, none);
+    value.if_less(none, smaller, all - smaller)
+}
+
+/// The share of a square of so many pixels' side that lies in a band, or a little less than none of it through
+/// rounding; `like` is any number.
+#[inline(always)]
+pub(super) fn share_of_band<T: Real>(band: &Band<T>, side: f64, like: T) -> T {
+    let (none, all) = (like.all(0.0), like.all(1.0));
+    let (mut outer, mut inner) = (none, none);
+    if let Some(line) = &band.outer {
+        outer = all - share_above(line, side);
+    }
+    if let Some(line) = &band.inner {
+        inner = share_above(line, side);
+    }
+    all - (outer + inner)
 }
 
 /// The share of a square of so many pixels' side that lies in any of the bands.
@@ -34,11 +49,7 @@ pub(super) fn share_of_union(bands: &[Band], side: f64) -> f64 {
     let mut count = 0;
     let mut share: f64 = 0.0;
     for band in bands {
-        let outer = band
-            .outer
-            .map_or(0.0, |line| 1.0 - share_above(&line, side));
-        let inner = band.inner.map_or(0.0, |line| share_above(&line, side));
-        let of_band = 1.0 - (outer + inner);
+        let of_band = share_of_band(band, side, 0.0);
         if of_band > 0.0 {
             share = share.max(of_band);
             partial[count] = *band;
@@ -85,9 +96,6 @@ struct Polygon {
     corners: [(f64, f64); MOST],
     count: usize,
 }
-
-/// As many orders as there are at most.
-const MOST_BANDS: usize = 12;
 
 /// A square's four, and one more for each order's edge.
 const MOST: usize = 20;

@@ -9,11 +9,17 @@
 //! A pixel over which an edge bends, where the whole ring is some pixels across, is cut into four, and those again
 //! where they must be: so are pixels that look at the hole.
 
-use super::area::{share_beside, share_of_union};
-use super::leaf::is_straight;
-use super::tiles::{Pixels, fill_frame};
+use fearless_simd::{Simd, SimdBase, f64x4};
+
+use super::area::{share_beside, share_of_band, share_of_union};
+use super::group::{Asked, Group};
+use super::tiles::{Kind, Pixels, fill_frame};
 use super::{RenderError, blank};
-use crate::isoradial::{Bundle, Isoradials, Open, OpenEdges, Picture, Uniform, Verdict};
+use crate::isoradial::{
+    Band, Bent, Bundle, Edge, EdgeOf, Found, Isoradials, Line, MOST_BANDS, Open, Patch, Picture,
+    Verdict,
+};
+use crate::lanes::{Level, Real, dispatch};
 use crate::scene::View;
 
 /// What is not linear of an edge over a pixel, in pixels, beyond which the pixel is cut up.
@@ -57,26 +63,44 @@ pub fn render_every_pixel(view: &View, curves: &Isoradials) -> Result<Vec<u8>, R
 
 /// What of a pixel is the disk.
 pub(super) struct Shares<'a> {
-    view: &'a View,
-    curves: &'a Isoradials,
     picture: Picture<'a>,
 }
 
 impl Pixels for Shares<'_> {
-    const REACH: f64 = 0.5;
-
-    /// Measured as the cheapest.
-    const DOUBT: f64 = 0.1;
+    const KIND: Kind = Kind {
+        reach: 0.5,
+        // Measured as the cheapest.
+        doubt: 0.1,
+    };
 
     fn value(&self, column: usize, row: usize, open: Option<Open>) -> u8 {
         let (left, top) = (column as f64, row as f64);
         byte(self.share((left, left + 1.0), (top, top + 1.0), open, CUTS))
     }
 
-    fn value_along(&self, column: usize, row: usize, leaf: &OpenEdges) -> u8 {
-        let centre = (column as f64 + 0.5, row as f64 + 0.5);
-        let bands = self.picture.bands_at(centre, leaf.edges());
-        byte(share_of_union(bands.as_slice(), 1.0))
+    fn draw_along(
+        &self,
+        level: Level,
+        (group, tile): (&Group, usize),
+        corner: (usize, usize),
+        asked: &Asked,
+        pixels: &mut [u8],
+        stride: usize,
+    ) {
+        let mut edges = Edges::new(group.open(tile).quarter());
+        for of in group.edges(tile) {
+            edges.push(of);
+        }
+        for four in asked.pixels().chunks(4) {
+            let place = |i: usize| four.get(i).copied().unwrap_or(four[0]);
+            let places = [place(0), place(1), place(2), place(3)];
+            let columns = places.map(|(i, _)| (corner.0 + usize::from(i)) as f64 + 0.5);
+            let rows = places.map(|(_, j)| (corner.1 + usize::from(j)) as f64 + 0.5);
+            let shares = dispatch!(level, simd => shares_of_four(simd, &self.picture, &edges, columns, rows));
+            for (&(i, j), share) in four.iter().zip(shares) {
+                pixels[usize::from(j) * stride + usize::from(i)] = byte(share);
+            }
+        }
     }
 }
 
@@ -84,12 +108,171 @@ fn byte(share: f64) -> u8 {
     (255.0 * share + 0.5) as u8
 }
 
+/// Edges of one quarter turn, piece by piece.
+struct Edges {
+    quarter: usize,
+    /// Those of each piece, its outer one first.
+    bands: [[Option<EdgeOf>; 2]; MOST_BANDS],
+    count: usize,
+}
+
+impl Edges {
+    fn new(quarter: usize) -> Self {
+        Self {
+            quarter,
+            bands: [[None; 2]; MOST_BANDS],
+            count: 0,
+        }
+    }
+
+    /// Adds an edge of the last piece or of one after it.
+    fn push(&mut self, of: EdgeOf) {
+        let last = self.bands[..self.count]
+            .last()
+            .map(|band| band[0].or(band[1]));
+        if last.flatten().map(|last| last.piece) != Some(of.piece) {
+            self.count += 1;
+        }
+        self.bands[self.count - 1][usize::from(of.edge == Edge::Inner)] = Some(of);
+    }
+}
+
+/// The shares of four pixels with nothing but `edges` open over them, all of which are straight there.
+#[inline(always)]
+fn shares_of_four<S: Simd>(
+    simd: S,
+    picture: &Picture<'_>,
+    edges: &Edges,
+    columns: [f64; 4],
+    rows: [f64; 4],
+) -> [f64; 4] {
+    let (columns, rows) = (
+        f64x4::from_slice(simd, &columns),
+        f64x4::from_slice(simd, &rows),
+    );
+    let spot = picture.spot(columns, rows, edges.quarter);
+    let none = columns.all(0.0);
+    let mut bands = [[Band::default(); MOST_BANDS]; 4];
+    for (index, [outer, inner]) in edges.bands[..edges.count].iter().enumerate() {
+        let mut band = Band {
+            outer: None,
+            inner: None,
+        };
+        if let Some(of) = *outer {
+            band.outer = Some(picture.tangent(&spot, of));
+        }
+        if let Some(of) = *inner {
+            band.inner = Some(picture.tangent(&spot, of));
+        }
+        if edges.count == 1 {
+            return none.larger(share_of_band(&band, 1.0, none)).into();
+        }
+        for (i, bands) in bands.iter_mut().enumerate() {
+            bands[index] = band.one(i);
+        }
+    }
+    bands.map(|bands| share_of_union(&bands[..edges.count], 1.0))
+}
+
+impl<S: Simd> Band<f64x4<S>> {
+    /// That of one of four pixels.
+    fn one(&self, i: usize) -> Band {
+        let one = |line: &Line<f64x4<S>>| Line {
+            value: line.value[i],
+            per_column: line.per_column[i],
+            per_row: line.per_row[i],
+        };
+        Band {
+            outer: self.outer.as_ref().map(one),
+            inner: self.inner.as_ref().map(one),
+        }
+    }
+}
+
+/// The edges that are open over one patch.
+struct OpenEdges {
+    open: Open,
+    bands: [Band; MOST_BANDS],
+    count: usize,
+    /// How far they are from their tangents at most, as a share of their gradients.
+    bend: f64,
+}
+
+impl OpenEdges {
+    /// The bands between them, their tangents in the patch's centre.
+    fn bands(&self) -> &[Band] {
+        &self.bands[..self.count]
+    }
+}
+
+/// Lists the edges that are open over one patch.
+struct Listed<'a> {
+    patch: &'a Patch,
+    open: &'a mut OpenEdges,
+    /// Whose edge was the last one.
+    piece: Option<usize>,
+}
+
+impl Found<f64> for Listed<'_> {
+    fn found(&mut self, of: EdgeOf, _: u32, bent: &Bent) {
+        let open = &mut *self.open;
+        if self.piece != Some(of.piece) {
+            self.piece = Some(of.piece);
+            open.count += 1;
+        }
+        let band = &mut open.bands[open.count - 1];
+        match of.edge {
+            Edge::Outer => band.outer = Some(bent.line),
+            Edge::Inner => band.inner = Some(bent.line),
+        }
+        open.open = open.open.with(of);
+        // The gradient's larger part is its length, but for a factor of √2.
+        let gradient = bent.line.per_column.abs().max(bent.line.per_row.abs());
+        let bend = self.patch.bend(bent) / gradient;
+        // Not a number is no straight line.
+        open.bend = if bend <= open.bend { open.bend } else { bend };
+    }
+}
+
+/// What of a patch is the disk.
+enum Seen {
+    All,
+    Nothing,
+    Along(OpenEdges),
+}
+
 impl<'a> Shares<'a> {
     fn new(view: &'a View, curves: &'a Isoradials) -> Self {
         Self {
-            view,
-            curves,
             picture: Picture::new(view, curves),
+        }
+    }
+
+    /// What of a patch is the disk.
+    fn sift(&self, patch: &Patch, before: Option<Open>) -> Seen {
+        let quarter = patch.quarter();
+        let before = before
+            .filter(|before| before.quarter() == quarter)
+            .unwrap_or(Open::all(quarter));
+        let mut open = OpenEdges {
+            open: Open::none(quarter),
+            bands: [Band::default(); MOST_BANDS],
+            count: 0,
+            bend: 0.0,
+        };
+        let mut listed = Listed {
+            patch,
+            open: &mut open,
+            piece: None,
+        };
+        let curves = self.picture.curves();
+        let sifted = curves.sift(patch, 1, before, &mut listed);
+        if sifted.hit != 0 {
+            Seen::All
+        } else if sifted.miss != 0 {
+            Seen::Nothing
+        } else {
+            Seen::Along(open)
         }
     }
 
@@ -102,31 +285,31 @@ impl<'a> Shares<'a> {
             } else if cuts == 0 {
                 let middle = |(from, to): (f64, f64)| 0.5 * (from + to);
                 f64::from(super::mask::sees(
-                    self.view,
-                    self.curves,
+                    self.picture.view(),
+                    self.picture.curves(),
                     (middle(columns), middle(rows)),
                 ))
             } else {
                 self.quarters(columns, rows, None, cuts)
             };
         };
-        let mut edges = OpenEdges::none();
-        match self.curves.patched(&patch, open, &mut edges) {
-            Err(Uniform::Hit) => 1.0,
-            Err(Uniform::Miss) => 0.0,
-            Ok(_) if is_straight(&patch, &edges, STRAIGHT * side) => {
-                share_of_union(edges.bands().as_slice(), side)
+        match self.sift(&patch, open) {
+            Seen::All => 1.0,
+            Seen::Nothing => 0.0,
+            Seen::Along(edges) if edges.bend <= STRAIGHT * side => {
+                share_of_union(edges.bands(), side)
             }
             // Edges that bend this much may be far from their tangents, and show where no tile lets them.
-            Ok(_) if cuts == 0 => {
-                let bundle = Bundle::new(self.view, columns, rows);
-                match bundle.map_or(Verdict::Mixed, |bundle| self.curves.verdict(&bundle)) {
+            Seen::Along(edges) if cuts == 0 => {
+                let bundle = Bundle::new(self.picture.view(), columns, rows);
+                let curves = self.picture.curves();
+                match bundle.map_or(Verdict::Mixed, |bundle| curves.verdict(&bundle)) {
                     Verdict::Hit => 1.0,
                     Verdict::Miss => 0.0,
-                    Verdict::Mixed => share_of_union(edges.bands().as_slice(), side),
+                    Verdict::Mixed => share_of_union(edges.bands(), side),
                 }
             }
-            Ok(open) => self.quarters(columns, rows, Some(open), cuts),
+            Seen::Along(edges) => self.quarters(columns, rows, Some(edges.open), cuts),
         }
     }
 
@@ -135,17 +318,16 @@ impl<'a> Shares<'a> {
     fn share_of_both(&self, columns: (f64, f64), rows: (f64, f64)) -> Option<f64> {
         let side = columns.1 - columns.0;
         let border = self.picture.border(columns, rows);
-        let mut edges = OpenEdges::none();
         let mut share = 0.0;
         for (quarter, border) in [border, border.opposite()].into_iter().enumerate() {
             let patch = self.picture.patch_in_quarter(columns, rows, quarter)?;
-            share += match self.curves.patched(&patch, None, &mut edges) {
-                Err(Uniform::Hit) => share_beside(&border, &[], side),
-                Err(Uniform::Miss) => 0.0,
-                Ok(_) if is_straight(&patch, &edges, STRAIGHT * side) => {
-                    share_beside(&border, edges.bands().as_slice(), side)
+            share += match self.sift(&patch, None) {
+                Seen::All => share_beside(&border, &[], side),
+                Seen::Nothing => 0.0,
+                Seen::Along(edges) if edges.bend <= STRAIGHT * side => {
+                    share_beside(&border, edges.bands(), side)
                 }
-                Ok(_) => return None,
+                Seen::Along(_) => return None,
             };
         }
         Some(share.min(1.0))

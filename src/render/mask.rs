@@ -1,9 +1,11 @@
 //! Frames with hard edges: white where a pixel's centre sees the disk, two comparisons a pixel and order, and those only
 //! along the disk's edges.
 
-use super::tiles::{Pixels, fill_frame};
+use super::group::{Asked, Group};
+use super::tiles::{Kind, Pixels, fill_frame};
 use super::{RenderError, blank, each_pixel};
-use crate::isoradial::{Isoradials, Open, OpenEdges};
+use crate::isoradial::{Isoradials, Open};
+use crate::lanes::Level;
 use crate::scene::View;
 
 /// White: the disk.
@@ -49,10 +51,11 @@ pub(super) struct Hard<'a> {
 }
 
 impl Pixels for Hard<'_> {
-    const REACH: f64 = 0.0;
-
-    /// Measured as the cheapest.
-    const DOUBT: f64 = 0.05;
+    const KIND: Kind = Kind {
+        reach: 0.0,
+        // Measured as the cheapest.
+        doubt: 0.05,
+    };
 
     fn value(&self, column: usize, row: usize, _: Option<Open>) -> u8 {
         let centre = (column as f64 + 0.5, row as f64 + 0.5);
@@ -63,8 +66,19 @@ impl Pixels for Hard<'_> {
         }
     }
 
-    fn value_along(&self, column: usize, row: usize, _: &OpenEdges) -> u8 {
-        self.value(column, row, None)
+    fn draw_along(
+        &self,
+        _: Level,
+        _: (&Group, usize),
+        (left, top): (usize, usize),
+        asked: &Asked,
+        pixels: &mut [u8],
+        stride: usize,
+    ) {
+        for &(i, j) in asked.pixels() {
+            let (i, j) = (usize::from(i), usize::from(j));
+            pixels[j * stride + i] = self.value(left + i, top + j, None);
+        }
     }
 }
 

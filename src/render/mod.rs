@@ -3,7 +3,7 @@
 
 mod area;
 pub mod coverage;
-mod leaf;
+mod group;
 pub mod mask;
 pub mod needs;
 pub mod pixelwise;

@@ -1,27 +1,62 @@
 //! Where a frame changes: tiles that are wholly within the disk or wholly off it are found and filled, what is left are
 //! the pixels along its edges.
 //!
-//! A tile is bounded as a [`Patch`] (whose page derives the bound); where that decides nothing it is split, and only
-//! the edges that were open over it are looked at again. In tiles so small that what is not linear in their pixels is
-//! a small share of a pixel, each row of pixels is cut at the edges' lines: into pixels that are decided for certain,
-//! and those that are asked one by one.
-
-use core::marker::PhantomData;
+//! Tiles are looked at four by four (see [`Group`]). One whose edges are not yet quadratics is split, and only the
+//! edges that were open over it are looked at again.
 
 use rayon::prelude::*;
 
 use super::RenderError;
 use super::coverage::Shares;
-use super::leaf::Leaf;
+use super::group::{Asked, Group, TILES};
 use super::mask::{Hard, WHITE};
-use crate::isoradial::{Bundle, Isoradials, Open, OpenEdges, Picture, Uniform, Verdict};
+use crate::isoradial::{Bundle, Isoradials, Open, Picture, Verdict};
+use crate::lanes::{Level, level};
 use crate::scene::View;
 
 /// The side of the largest tiles, in pixels.
-const TILE: usize = 64;
+pub(super) const TILE: usize = 64;
 
 /// The side of the smallest tiles.
 const SMALLEST: usize = 4;
+
+/// How a frame's pixels look at their edges.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Kind {
+    /// How far from its centre a pixel looks to either side, in pixels: 0 for what its centre sees.
+    pub(super) reach: f64,
+    /// A tile is drawn from its edges' quadratics where what is not quadratic of them is below this, in pixels: a
+    /// compromise between tiles and pixels to be asked.
+    pub(super) doubt: f64,
+}
+
+/// What a frame's pixels are.
+pub(super) trait Pixels: Sync {
+    /// How they look at their edges.
+    const KIND: Kind;
+
+    /// The value of the pixel (column, row). `open` are edges among which are all that are open over it.
+    fn value(&self, column: usize, row: usize, open: Option<Open>) -> u8;
+
+    /// Draws the pixels of a tile that are to be asked, along its edges: into `pixels`, from the tile's corner `corner`
+    /// on.
+    fn draw_along(
+        &self,
+        level: Level,
+        group: (&Group, usize),
+        corner: (usize, usize),
+        asked: &Asked,
+        pixels: &mut [u8],
+        stride: usize,
+    );
+}
+
+/// How a frame is filled.
+struct Filler<'a, P> {
+    level: Level,
+    picture: Picture<'a>,
+    pixels: P,
+}
 
 /// A band of a frame's rows.
 struct Band<'a> {
@@ -31,41 +66,21 @@ struct Band<'a> {
     stride: usize,
     /// The first row's place in the frame.
     first: usize,
-    /// The edges that are open over the tile at hand.
-    edges: OpenEdges,
+    /// How many columns and rows.
+    size: (usize, usize),
+    /// The tiles at hand.
+    group: Group,
+    /// The pixels to be asked of one of them.
+    asked: Asked,
 }
 
-/// A rectangle of a band's pixels.
-#[derive(Debug, Clone, Copy)]
+/// A square of a band's pixels; of that, what is within the band.
+#[derive(Debug, Clone, Copy, Default)]
 struct Tile {
     left: usize,
     top: usize,
     width: usize,
     height: usize,
-}
-
-/// What a frame's pixels are.
-pub(super) trait Pixels: Sync {
-    /// How far from its centre a pixel looks to either side, in pixels: 0 for what its centre sees.
-    const REACH: f64;
-
-    /// A tile is drawn from its edges' quadratics where what is not quadratic of them is below this, in pixels: a
-    /// compromise between tiles and pixels to be asked.
-    const DOUBT: f64;
-
-    /// The value of the pixel (column, row). `open` are edges among which are all that are open over it.
-    fn value(&self, column: usize, row: usize, open: Option<Open>) -> u8;
-
-    /// The value of a pixel of a leaf, along its edges.
-    fn value_along(&self, column: usize, row: usize, leaf: &OpenEdges) -> u8;
-}
-
-/// How a frame is filled.
-struct Filler<'a, P> {
-    view: &'a View,
-    curves: &'a Isoradials,
-    picture: Picture<'a>,
-    pixels: P,
 }
 
 /// Fills a frame, on all threads of the current rayon pool: row j begins at `j stride` of `pixels`.
@@ -75,7 +90,7 @@ struct Filler<'a, P> {
 pub(super) fn fill_frame<P: Pixels>(
     view: &View,
     curves: &Isoradials,
-    pixels_are: P,
+    kind: P,
     pixels: &mut [u8],
     stride: usize,
 ) -> Result<(), RenderError> {
@@ -90,109 +105,140 @@ pub(super) fn fill_frame<P: Pixels>(
         });
     }
     let filler = Filler {
-        view,
-        curves,
+        level: level(),
         picture: Picture::new(view, curves),
-        pixels: pixels_are,
+        pixels: kind,
     };
     pixels[..needed]
         .par_chunks_mut(stride * TILE)
         .enumerate()
         .for_each(|(index, pixels)| {
             let first = index * TILE;
-            let height = TILE.min(height - first);
             let mut band = Band {
                 pixels,
                 stride,
                 first,
-                edges: OpenEdges::none(),
+                size: (width, TILE.min(height - first)),
+                group: Group::new(),
+                asked: Asked::new(),
             };
-            band.blacken(height, width);
-            for left in (0..width).step_by(TILE) {
-                let tile = Tile {
-                    left,
-                    top: 0,
-                    width: TILE.min(width - left),
-                    height,
-                };
-                filler.fill(&mut band, tile, None);
+            band.blacken();
+            for left in (0..width).step_by(TILES * TILE) {
+                let corners = [0, 1, 2, 3].map(|i| (left + i * TILE, 0));
+                filler.fill(&mut band, corners, TILE, None);
             }
         });
     Ok(())
 }
 
 impl<P: Pixels> Filler<'_, P> {
-    /// Fills a tile of a band, all of whose pixels are black.
-    fn fill(&self, band: &mut Band<'_>, tile: Tile, before: Option<Open>) {
-        let top = band.first + tile.top;
-        let columns = (tile.left as f64, (tile.left + tile.width) as f64);
-        let rows = (top as f64, (top + tile.height) as f64);
-        let Some(patch) = self.picture.patch(columns, rows) else {
-            return self.fill_bundle(band, tile);
-        };
-        match self.curves.patched(&patch, before, &mut band.edges) {
-            Err(Uniform::Miss) => {}
-            Err(Uniform::Hit) => band.whiten(tile),
-            Ok(open) => {
-                if let Some(leaf) = Leaf::new(&patch, &band.edges, P::REACH, P::DOUBT) {
-                    self.draw(band, tile, &leaf);
-                } else if tile.is_smallest() {
-                    self.ask(band, tile, Some(open));
+    /// Fills four tiles of a band, all of whose pixels are black, from their corners on.
+    fn fill(
+        &self,
+        band: &mut Band<'_>,
+        corners: [(usize, usize); TILES],
+        side: usize,
+        before: Option<Open>,
+    ) {
+        let half = 0.5 * side as f64;
+        let tiles = corners.map(|corner| band.tile(corner, side));
+        let mut active = 0;
+        for (i, tile) in tiles.iter().enumerate() {
+            active |= u32::from(tile.width > 0 && tile.height > 0) << i;
+        }
+        let centres = (
+            corners.map(|(left, _)| left as f64 + half),
+            corners.map(|(_, top)| (band.first + top) as f64 + half),
+        );
+        band.group.look(
+            self.level,
+            &self.picture,
+            centres,
+            [half; 2],
+            active,
+            before,
+            P::KIND,
+        );
+        let group = &band.group;
+        let (hit, miss, unknown) = (group.hit, group.miss, group.unknown);
+        let quadratic = group.quadratic;
+        let mut split = [None; TILES];
+        for (i, tile) in tiles.into_iter().enumerate() {
+            let is = |mask: u32| mask & (1 << i) != 0;
+            if !is(active) || is(miss) {
+            } else if is(hit) {
+                band.whiten(tile);
+            } else if is(unknown) {
+                split[i] = self.fill_bundle(band, tile).then_some(None);
+            } else if is(quadratic) {
+                self.draw(band, tile, i);
+            } else {
+                split[i] = Some(Some(band.group.open(i)));
+            }
+        }
+        for (tile, open) in tiles.into_iter().zip(split) {
+            if let Some(open) = open {
+                if side <= SMALLEST {
+                    self.ask(band, tile, open);
                 } else {
-                    self.split(band, tile, Some(open));
+                    self.split(band, tile, side, open);
                 }
             }
         }
     }
 
-    /// Fills a tile whose rays are in both quarter turns, or all about the hole's direction.
-    fn fill_bundle(&self, band: &mut Band<'_>, tile: Tile) {
+    /// Fills a tile whose rays are in both quarter turns, or all about the hole's direction, if it is all alike. Whether
+    /// it may not be.
+    fn fill_bundle(&self, band: &mut Band<'_>, tile: Tile) -> bool {
         // With half a pixel more on each side, where pixels look to either side of their centres: what is on one side
         // of an edge there is so too for lines that take the edge's place.
+        let reach = P::KIND.reach;
         let (left, top) = (
-            tile.left as f64 - P::REACH,
-            (band.first + tile.top) as f64 - P::REACH,
+            tile.left as f64 - reach,
+            (band.first + tile.top) as f64 - reach,
         );
         let (wide, high) = (
-            tile.width as f64 + 2.0 * P::REACH,
-            tile.height as f64 + 2.0 * P::REACH,
+            tile.width as f64 + 2.0 * reach,
+            tile.height as f64 + 2.0 * reach,
         );
-        let bundle = Bundle::new(self.view, (left, left + wide), (top, top + high));
-        match bundle.map_or(Verdict::Mixed, |bundle| self.curves.verdict(&bundle)) {
-            Verdict::Miss => {}
-            Verdict::Hit => band.whiten(tile),
-            Verdict::Mixed if tile.is_smallest() => self.ask(band, tile, None),
-            Verdict::Mixed => self.split(band, tile, None),
+        let bundle = Bundle::new(self.picture.view(), (left, left + wide), (top, top + high));
+        let curves = self.picture.curves();
+        let verdict = bundle.map_or(Verdict::Mixed, |bundle| curves.verdict(&bundle));
+        if verdict == Verdict::Hit {
+            band.whiten(tile);
         }
+        verdict == Verdict::Mixed
     }
 
-    fn split(&self, band: &mut Band<'_>, tile: Tile, open: Option<Open>) {
-        // Halves, the first of them rounded up to a power of two.
-        let half = |side: usize| side.next_power_of_two() / 2;
-        let (width, height) = (half(tile.width).max(1), half(tile.height).max(1));
-        for top in (tile.top..tile.top + tile.height).step_by(height) {
-            for left in (tile.left..tile.left + tile.width).step_by(width) {
-                let part = Tile {
-                    left,
-                    top,
-                    width: width.min(tile.left + tile.width - left),
-                    height: height.min(tile.top + tile.height - top),
-                };
-                self.fill(band, part, open);
-            }
-        }
+    fn split(&self, band: &mut Band<'_>, tile: Tile, side: usize, open: Option<Open>) {
+        let half = side / 2;
+        let corners = [(0, 0), (half, 0), (0, half), (half, half)]
+            .map(|(right, down)| (tile.left + right, tile.top + down));
+        self.fill(band, corners, half, open);
     }
 
     /// Draws a tile from its edges' quadratics, and asks the pixels along them.
-    fn draw(&self, band: &mut Band<'_>, tile: Tile, leaf: &Leaf) {
-        for j in 0..tile.height {
-            let y = band.first + tile.top + j;
-            let first = (tile.top + j) * band.stride + tile.left;
-            let row = &mut band.pixels[first..first + tile.width];
-            leaf.draw_row(j, row, |i| {
-                self.pixels.value_along(tile.left + i, y, &band.edges)
-            });
-        }
+    fn draw(&self, band: &mut Band<'_>, tile: Tile, index: usize) {
+        let first = tile.top * band.stride + tile.left;
+        let (pixels, group) = (&mut band.pixels[first..], &band.group);
+        let size = (tile.width, tile.height);
+        group.draw(
+            self.level,
+            index,
+            pixels,
+            band.stride,
+            size,
+            &mut band.asked,
+        );
+        let corner = (tile.left, band.first + tile.top);
+        self.pixels.draw_along(
+            self.level,
+            (group, index),
+            corner,
+            &band.asked,
+            pixels,
+            band.stride,
+        );
     }
 
     /// Asks every pixel of a tile.
@@ -207,24 +253,27 @@ impl<P: Pixels> Filler<'_, P> {
     }
 }
 
-impl Tile {
-    fn is_smallest(self) -> bool {
-        self.width.max(self.height) <= SMALLEST
-    }
-}
-
 impl Band<'_> {
+    /// What of a tile is in the band.
+    fn tile(&self, (left, top): (usize, usize), side: usize) -> Tile {
+        Tile {
+            left,
+            top,
+            width: side.min(self.size.0.saturating_sub(left)),
+            height: side.min(self.size.1.saturating_sub(top)),
+        }
+    }
+
     fn row(&mut self, row: usize, left: usize, width: usize) -> &mut [u8] {
         &mut self.pixels[row * self.stride + left..][..width]
     }
 
-    /// Makes the first `height` rows black.
-    fn blacken(&mut self, height: usize, width: usize) {
-        if self.stride == width {
+    fn blacken(&mut self) {
+        if self.stride == self.size.0 {
             self.pixels.fill(0);
         } else {
-            for row in 0..height {
-                self.row(row, 0, width).fill(0);
+            for row in 0..self.size.1 {
+                self.row(row, 0, self.size.0).fill(0);
             }
         }
     }
@@ -250,36 +299,30 @@ pub fn cull(
 ) -> Result<(), RenderError> {
     let stride = view.width() as usize;
     if smooth {
-        fill_frame(
-            view,
-            curves,
-            Unasked::<Shares<'_>>(PhantomData),
-            pixels,
-            stride,
-        )
+        fill_frame(view, curves, Unasked::<true>, pixels, stride)
     } else {
-        fill_frame(
-            view,
-            curves,
-            Unasked::<Hard<'_>>(PhantomData),
-            pixels,
-            stride,
-        )
+        fill_frame(view, curves, Unasked::<false>, pixels, stride)
     }
 }
 
-/// Pixels that are black along the edges, of tiles as another kind of pixels has them.
-struct Unasked<P>(PhantomData<P>);
+/// Pixels that are black along the edges, of tiles as smooth or as hard ones have them.
+struct Unasked<const SMOOTH: bool>;
 
-impl<P: Pixels> Pixels for Unasked<P> {
-    const REACH: f64 = P::REACH;
-    const DOUBT: f64 = P::DOUBT;
+impl<const SMOOTH: bool> Pixels for Unasked<SMOOTH> {
+    const KIND: Kind = if SMOOTH { Shares::KIND } else { Hard::KIND };
 
     fn value(&self, _: usize, _: usize, _: Option<Open>) -> u8 {
         0
     }
 
-    fn value_along(&self, _: usize, _: usize, _: &OpenEdges) -> u8 {
-        0
+    fn draw_along(
+        &self,
+        _: Level,
+        _: (&Group, usize),
+        _: (usize, usize),
+        _: &Asked,
+        _: &mut [u8],
+        _: usize,
+    ) {
     }
 }

@@ -10,6 +10,8 @@ use core::ops::{Mul, Sub};
 use serde::{Deserialize, Serialize};
 use wide::f64x2;
 
+use crate::lanes::Real;
+
 /// A uniform axis whose ends lie exactly on its first and its last node.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Axis {
@@ -176,54 +178,69 @@ pub(crate) fn bounds(coefficients: &[f64], axis: Scale, x: (f64, f64)) -> (f64, 
 
 /// A spline about one place.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Jet {
-    pub(crate) value: f64,
-    pub(crate) slope: f64,
+pub(crate) struct Jet<T = f64> {
+    pub(crate) value: T,
+    pub(crate) slope: T,
     /// The second derivative.
-    pub(crate) bend: f64,
+    pub(crate) bend: T,
     /// The least and the greatest third derivative near by.
-    pub(crate) third: (f64, f64),
+    pub(crate) third: [T; 2],
 }
 
 /// A spline's value and slope at x.
 #[inline(always)]
-pub(crate) fn value_and_slope(coefficients: &[f64], axis: Scale, x: f64) -> (f64, f64) {
-    let (cell, f) = axis.cell_and_share(x);
-    let c = &coefficients[cell..cell + 4];
-    let g = 1.0 - f;
-    let w = weights(f);
-    let slope =
-        (f * f * c[3] - g * g * c[0]) + (g * (4.0 - 3.0 * g) * c[2] - f * (4.0 - 3.0 * f) * c[1]);
-    (
-        (w[0] * c[0] + w[1] * c[1]) + (w[2] * c[2] + w[3] * c[3]),
-        3.0 * slope * axis.per_unit,
-    )
+pub(crate) fn value_and_slope<T: Real>(coefficients: &[f64], axis: Scale, x: T) -> [T; 2] {
+    let [f, c0, c1, c2, c3] = x.map(x, |x, _| {
+        let (cell, f) = axis.cell_and_share(x);
+        let c = &coefficients[cell..cell + 4];
+        [f, c[0], c[1], c[2], c[3]]
+    });
+    within_cell(axis, f, [c0, c1, c2, c3])
+}
+
+/// A spline's value and slope at a share of a cell, between the four coefficients about it.
+#[inline(always)]
+fn within_cell<T: Real>(axis: Scale, f: T, [c0, c1, c2, c3]: [T; 4]) -> [T; 2] {
+    let g = -(f - 1.0);
+    let (f2, g2) = (f * f, g * g);
+    let (near, far) = (
+        -(f2 * -(f * 3.0 - 6.0) - 4.0),
+        -(g2 * -(g * 3.0 - 6.0) - 4.0),
+    );
+    let value = (g2 * g * c0 + near * c1) + (far * c2 + f2 * f * c3);
+    let slope = (f2 * c3 - g2 * c0) + (g * -(g * 3.0 - 4.0) * c2 - f * -(f * 3.0 - 4.0) * c1);
+    [value, slope * (3.0 * axis.per_unit)]
 }
 
 /// A spline about x, as far as `reach`. Its third derivative is constant in each cell: the coefficients' third
 /// difference.
 #[inline(always)]
-pub(crate) fn jet(coefficients: &[f64], axis: Scale, x: f64, reach: f64) -> Jet {
-    let (value, slope) = value_and_slope(coefficients, axis, x);
-    let (cell, f) = axis.cell_and_share(x);
-    let c = &coefficients[cell..cell + 4];
-    let second = (c[0] - 2.0 * c[1] + c[2], c[1] - 2.0 * c[2] + c[3]);
-    let (low, _) = axis.cell_and_share(x - reach);
-    let (high, _) = axis.cell_and_share(x + reach);
-    let third = coefficients[low..high + 4].windows(4).fold(
-        (f64::INFINITY, f64::NEG_INFINITY),
-        |(least, greatest), c| {
-            let third = (c[3] - c[0]) - 3.0 * (c[2] - c[1]);
-            (third.min(least), third.max(greatest))
-        },
-    );
+pub(crate) fn jet<T: Real>(coefficients: &[f64], axis: Scale, x: T, reach: T) -> Jet<T> {
+    let [f, c0, c1, c2, c3, least, greatest] = x.map(reach, |x, reach| {
+        let (cell, f) = axis.cell_and_share(x);
+        let c = &coefficients[cell..cell + 4];
+        let (low, _) = axis.cell_and_share(x - reach);
+        let (high, _) = axis.cell_and_share(x + reach);
+        let third = |c: &[f64]| (c[3] - c[0]) - 3.0 * (c[2] - c[1]);
+        let (mut least, mut greatest) = (third(c), third(c));
+        if low < high {
+            for c in coefficients[low..high + 4].windows(4) {
+                let third = third(c);
+                (least, greatest) = (least.min(third), greatest.max(third));
+            }
+        }
+        [f, c[0], c[1], c[2], c[3], least, greatest]
+    });
+    let [value, slope] = within_cell(axis, f, [c0, c1, c2, c3]);
+    let g = -(f - 1.0);
+    let (first, second) = (c0 - c1 * 2.0 + c2, c1 - c2 * 2.0 + c3);
     let scale = 6.0 * axis.per_unit * axis.per_unit;
     let cube = scale * axis.per_unit;
     Jet {
         value,
         slope,
-        bend: scale * ((1.0 - f) * second.0 + f * second.1),
-        third: (cube * third.0, cube * third.1),
+        bend: (g * first + f * second) * scale,
+        third: [least * cube, greatest * cube],
     }
 }
 
@@ -392,7 +409,7 @@ mod tests {
                 let y = x + f64::from(j) * 0.0099;
                 let second = (at(y - 1e-3) - 2.0 * at(y) + at(y + 1e-3)) / 1e-6;
                 // A difference quotient of values that are right to ε.
-                let (low, high) = ((y - x) * jet.third.0, (y - x) * jet.third.1);
+                let (low, high) = ((y - x) * jet.third[0], (y - x) * jet.third[1]);
                 assert!(
                     second - jet.bend >= low.min(high) - 1e-6
                         && second - jet.bend <= low.max(high) + 1e-6,

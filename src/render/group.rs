@@ -1,0 +1,341 @@
+//! Four tiles of one size side by side: which of them are all disk or all sky, which edges are open over the others, and
+//! whether those are quadratics there.
+//!
+//! A tile is drawn from its edges' quadratics where these are right to a small share of a pixel: in each pixel's centre
+//! an edge's quadratic is compared with what it may be off by, and with how far the pixel looks to either side. What
+//! decides nothing are the pixels along the edges, which are asked. The comparison is in single precision, many pixels
+//! side by side; its rounding is part of the doubt.
+
+use fearless_simd::{Simd, SimdBase, f32x8, f64x4};
+
+use super::coverage::STRAIGHT;
+use super::mask::WHITE;
+use super::tiles::Kind;
+use crate::isoradial::{Bent, Edge, EdgeOf, Found, MOST_EDGES, Open, Patch, Picture};
+use crate::lanes::{Level, Real, dispatch};
+
+/// How many tiles stand side by side.
+pub(super) const TILES: usize = 4;
+
+/// What is known of four tiles: a bit for each in every mask.
+#[derive(Debug, Clone)]
+pub(super) struct Group {
+    /// All their pixels see the disk.
+    pub(super) hit: u32,
+    /// None of them does.
+    pub(super) miss: u32,
+    /// Nothing is known: they are in both quarter turns, or all about the hole's direction.
+    pub(super) unknown: u32,
+    /// All edges open over them are quadratics, and straight over each pixel.
+    pub(super) quadratic: u32,
+    /// The edges that are open over any of them.
+    edges: [GroupEdge; MOST_EDGES],
+    count: usize,
+    half: [f64; 2],
+}
+
+/// An edge that is open over some of the tiles.
+#[derive(Debug, Clone, Copy)]
+struct GroupEdge {
+    of: EdgeOf,
+    quarter: usize,
+    tiles: u32,
+    quadratics: [Quadratic; TILES],
+}
+
+/// An edge over a tile, as a multiple of what it may be off by: positive within its band.
+#[derive(Debug, Clone, Copy, Default)]
+struct Quadratic {
+    value: f32,
+    per_column: f32,
+    per_row: f32,
+    columns: f32,
+    both: f32,
+    rows: f32,
+}
+
+/// The pixels of a tile that are to be asked, each its column and its row in the tile.
+#[derive(Debug)]
+pub(super) struct Asked {
+    pixels: [(u8, u8); super::tiles::TILE * super::tiles::TILE],
+    count: usize,
+}
+
+impl Asked {
+    pub(super) fn new() -> Self {
+        Self {
+            pixels: [(0, 0); super::tiles::TILE * super::tiles::TILE],
+            count: 0,
+        }
+    }
+
+    pub(super) fn pixels(&self) -> &[(u8, u8)] {
+        &self.pixels[..self.count]
+    }
+}
+
+impl Group {
+    pub(super) fn new() -> Self {
+        let edge = GroupEdge {
+            of: EdgeOf {
+                piece: 0,
+                edge: Edge::Outer,
+            },
+            quarter: 0,
+            tiles: 0,
+            quadratics: [Quadratic::default(); TILES],
+        };
+        Self {
+            hit: 0,
+            miss: 0,
+            unknown: 0,
+            quadratic: 0,
+            edges: [edge; MOST_EDGES],
+            count: 0,
+            half: [0.0; 2],
+        }
+    }
+
+    /// Looks at the tiles about (columns, rows), so many pixels to either side, of those that `active` has a bit for.
+    /// `before` are the edges open over a tile that they are part of.
+    pub(super) fn look(
+        &mut self,
+        level: Level,
+        picture: &Picture<'_>,
+        (columns, rows): ([f64; TILES], [f64; TILES]),
+        half: [f64; 2],
+        active: u32,
+        before: Option<Open>,
+        kind: Kind,
+    ) {
+        dispatch!(level, simd => self.look_in(simd, picture, (columns, rows), half, active, before, kind));
+    }
+
+    #[inline(always)]
+    fn look_in<S: Simd>(
+        &mut self,
+        simd: S,
+        picture: &Picture<'_>,
+        (columns, rows): ([f64; TILES], [f64; TILES]),
+        half: [f64; 2],
+        active: u32,
+        before: Option<Open>,
+        kind: Kind,
+    ) {
+        let (columns, rows) = (
+            f64x4::from_slice(simd, &columns),
+            f64x4::from_slice(simd, &rows),
+        );
+        self.count = 0;
+        self.half = half;
+        (self.hit, self.miss, self.quadratic) = (0, 0, active);
+        let mut left = active;
+        for quarter in 0..2 {
+            if left == 0 || before.is_some_and(|before| before.quarter() != quarter) {
+                continue;
+            }
+            let patch = picture.patch_about(columns, rows, half, quarter);
+            let sound = left & patch.sound(picture);
+            if sound == 0 {
+                continue;
+            }
+            left &= !sound;
+            let before = before.unwrap_or(Open::all(quarter));
+            let mut listed = Listed {
+                group: self,
+                patch: &patch,
+                kind,
+            };
+            let sifted = picture.curves().sift(&patch, sound, before, &mut listed);
+            self.hit |= sifted.hit;
+            self.miss |= sifted.miss;
+        }
+        self.unknown = left;
+    }
+
+    /// The edges that are open over a tile, which is neither hit nor missed nor unknown.
+    pub(super) fn open(&self, tile: usize) -> Open {
+        let mut edges = self.edges_of(tile).peekable();
+        let quarter = edges.peek().map_or(0, |edge| edge.quarter);
+        edges.fold(Open::none(quarter), |open, edge| open.with(edge.of))
+    }
+
+    /// The same, one by one.
+    pub(super) fn edges(&self, tile: usize) -> impl Iterator<Item = EdgeOf> {
+        self.edges_of(tile).map(|edge| edge.of)
+    }
+
+    fn edges_of(&self, tile: usize) -> impl Iterator<Item = &GroupEdge> {
+        self.edges[..self.count]
+            .iter()
+            .filter(move |edge| edge.tiles & (1 << tile) != 0)
+    }
+
+    /// Draws a tile whose edges are quadratics: white pixels into `rows`, those along the edges into `asked`. The first
+    /// `size` columns and rows of it are in the picture.
+    pub(super) fn draw(
+        &self,
+        level: Level,
+        tile: usize,
+        pixels: &mut [u8],
+        stride: usize,
+        size: (usize, usize),
+        asked: &mut Asked,
+    ) {
+        dispatch!(level, simd => self.draw_in(simd, tile, pixels, stride, size, asked));
+    }
+
+    #[inline(always)]
+    fn draw_in<S: Simd>(
+        &self,
+        simd: S,
+        tile: usize,
+        pixels: &mut [u8],
+        stride: usize,
+        (width, height): (usize, usize),
+        asked: &mut Asked,
+    ) {
+        let mut edges = [(true, Quadratic::default()); MOST_EDGES];
+        let mut count = 0;
+        let mut last = None;
+        for edge in self.edges_of(tile) {
+            edges[count] = (last != Some(edge.of.piece), edge.quadratics[tile]);
+            last = Some(edge.of.piece);
+            count += 1;
+        }
+        let edges = &edges[..count];
+        let half = self.half.map(|half| half as f32);
+        let steps = f32x8::from_slice(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+        let (one, minus_one) = (f32x8::splat(simd, 1.0), f32x8::splat(simd, -1.0));
+        asked.count = 0;
+        for j in 0..height {
+            let dy = j as f32 + 0.5 - half[1];
+            let row = &mut pixels[j * stride..][..width];
+            for (block, row) in row.chunks_mut(8).enumerate() {
+                let first = 8 * block;
+                let dx = steps + (first as f32 + 0.5 - half[0]);
+                // The most of the bands, each of which is the least of its edges.
+                let mut most = f32x8::splat(simd, f32::NEG_INFINITY);
+                let mut least = most;
+                for (new, edge) in edges {
+                    let value = edge.value + dy * (edge.per_row + dy * edge.rows);
+                    let slope = edge.per_column + dy * edge.both;
+                    let g = dx * (dx * edge.columns + slope) + value;
+                    if *new {
+                        most = simd.max_f32x8(most, least);
+                        least = g;
+                    } else {
+                        least = simd.min_f32x8(least, g);
+                    }
+                }
+                most = simd.max_f32x8(most, least);
+                let bits = (1_u32 << row.len()) - 1;
+                let white = simd.to_bitmask_mask32x8(simd.simd_ge_f32x8(most, one)) as u32 & bits;
+                let some =
+                    simd.to_bitmask_mask32x8(simd.simd_ge_f32x8(most, minus_one)) as u32 & bits;
+                if white != 0 {
+                    for (pixel, white) in row.iter_mut().zip(SPREAD[white as usize]) {
+                        *pixel = white;
+                    }
+                }
+                let mut unsure = some & !white;
+                while unsure != 0 {
+                    let i = unsure.trailing_zeros();
+                    unsure &= unsure - 1;
+                    asked.pixels[asked.count] = ((first as u32 + i) as u8, j as u8);
+                    asked.count += 1;
+                }
+            }
+        }
+    }
+}
+
+/// Lists the edges that are open over four tiles.
+struct Listed<'a, T> {
+    group: &'a mut Group,
+    patch: &'a Patch<T>,
+    kind: Kind,
+}
+
+impl<T: Real + Into<[f64; TILES]>> Found<T> for Listed<'_, T> {
+    #[inline(always)]
+    fn found(&mut self, of: EdgeOf, tiles: u32, bent: &Bent<T>) {
+        let (quadratics, good) = quadratics(self.patch, bent, of.edge, self.kind);
+        self.group.quadratic &= good | !tiles;
+        self.group.edges[self.group.count] = GroupEdge {
+            of,
+            quarter: self.patch.quarter(),
+            tiles,
+            quadratics,
+        };
+        self.group.count += 1;
+    }
+}
+
+/// White bytes where a number's bits are set, the lowest one first.
+const SPREAD: [[u8; 8]; 256] = {
+    let mut spread = [[0; 8]; 256];
+    let mut i = 0;
+    while i < 256 {
+        let mut bit = 0;
+        while bit < 8 {
+            if i & (1 << bit) != 0 {
+                spread[i][bit] = WHITE;
+            }
+            bit += 1;
+        }
+        i += 1;
+    }
+    spread
+};
+
+/// An edge's quadratics over four tiles, and for which of them it is one.
+#[inline(always)]
+fn quadratics<T: Real + Into<[f64; TILES]>>(
+    patch: &Patch<T>,
+    bent: &Bent<T>,
+    edge: Edge,
+    kind: Kind,
+) -> ([Quadratic; TILES], u32) {
+    /// Of what an edge may be off its tangent in a pixel by the pixel's own bounds. A tile's are wider than these.
+    const SURELY_STRAIGHT: f64 = 0.9 * STRAIGHT;
+    /// The share of its terms by which a quadratic is off in single precision: its nine roundings, with room.
+    const ROUNDING: f64 = 1.0 / 1_048_576.0;
+    let [half_columns, half_rows] = patch.half();
+    let [right, down] = patch.across();
+    let line = &bent.line;
+    let turning = patch.turning(bent);
+    let (steep_columns, steep_rows) = (line.per_column.abs(), line.per_row.abs());
+    let steep = (steep_columns - turning[0]).larger(steep_rows - turning[1]);
+    let off = patch.doubt(bent);
+    let mut good = !(steep * kind.doubt).less(off) & steep.all(0.0).less(steep);
+    if kind.reach > 0.0 {
+        good &= patch.bend_of_pixel(bent).less(steep * SURELY_STRAIGHT);
+    }
+    let terms =
+        line.value.abs() + steep_columns * half_columns + steep_rows * half_rows + patch.bend(bent);
+    let seen = (steep_columns + turning[0] + steep_rows + turning[1]) * kind.reach;
+    let sign = if edge == Edge::Outer { 1.0 } else { -1.0 };
+    let unit = steep.all(sign) / (off + seen + terms * ROUNDING);
+    let bend = unit * bent.bend.middle;
+    let quadratics: [[f64; TILES]; 6] = [
+        (unit * line.value).into(),
+        (unit * line.per_column).into(),
+        (unit * line.per_row).into(),
+        (bend * right * right * -0.5).into(),
+        (-(bend * right * down)).into(),
+        (bend * down * down * -0.5).into(),
+    ];
+    let mut tiles = [Quadratic::default(); TILES];
+    for (i, tile) in tiles.iter_mut().enumerate() {
+        *tile = Quadratic {
+            value: quadratics[0][i] as f32,
+            per_column: quadratics[1][i] as f32,
+            per_row: quadratics[2][i] as f32,
+            columns: quadratics[3][i] as f32,
+            both: quadratics[4][i] as f32,
+            rows: quadratics[5][i] as f32,
+        };
+    }
+    (tiles, good)
+}
