@@ -32,8 +32,17 @@ pub(crate) trait Real:
     /// A bit for each number, the first one's the lowest: whether it is less than `other`.
     fn less(self, other: Self) -> u32;
 
-    /// Some functions of each number and its companion.
-    fn map<const N: usize>(self, other: Self, f: impl Fn(f64, f64) -> [f64; N]) -> [Self; N];
+    /// One index for each number.
+    type Indices: AsRef<[usize]> + Copy;
+
+    /// Rounded to integers, ties to even, none below 0 or above `last`: as indices, and as numbers.
+    fn rounded(self, last: i32) -> (Self::Indices, Self);
+
+    /// What stands in a list from each index on.
+    fn from_each(self, list: &[f64], first: Self::Indices) -> [Self; 4];
+
+    /// The least and the greatest in a list from each of one index to each of another one.
+    fn range_of(self, list: &[f64], first: Self::Indices, last: Self::Indices) -> [Self; 2];
 
     /// The larger of two.
     #[inline(always)]
@@ -74,9 +83,23 @@ impl Real for f64 {
         u32::from(self < other)
     }
 
+    type Indices = [usize; 1];
+
     #[inline(always)]
-    fn map<const N: usize>(self, other: Self, f: impl Fn(f64, f64) -> [f64; N]) -> [Self; N] {
-        f(self, other)
+    fn rounded(self, last: i32) -> ([usize; 1], Self) {
+        let index = rounded(self, last);
+        ([index], index as f64)
+    }
+
+    #[inline(always)]
+    fn from_each(self, list: &[f64], [first]: [usize; 1]) -> [Self; 4] {
+        let four = &list[first..first + 4];
+        [four[0], four[1], four[2], four[3]]
+    }
+
+    #[inline(always)]
+    fn range_of(self, list: &[f64], [first]: [usize; 1], [last]: [usize; 1]) -> [Self; 2] {
+        range_of(list, first, last)
     }
 }
 
@@ -106,12 +129,73 @@ impl<S: Simd> Real for f64x4<S> {
         self.simd_lt(other).to_bitmask() as u32
     }
 
+    type Indices = [usize; 4];
+
     #[inline(always)]
-    fn map<const N: usize>(self, other: Self, f: impl Fn(f64, f64) -> [f64; N]) -> [Self; N] {
-        let (a, b): ([f64; 4], [f64; 4]) = (self.into(), other.into());
-        let [f0, f1, f2, f3] = [f(a[0], b[0]), f(a[1], b[1]), f(a[2], b[2]), f(a[3], b[3])];
-        core::array::from_fn(|i| Self::from_slice(self.simd, &[f0[i], f1[i], f2[i], f3[i]]))
+    fn rounded(self, last: i32) -> ([usize; 4], Self) {
+        let [a, b, c, d]: [f64; 4] = self.into();
+        let indices = [
+            rounded(a, last),
+            rounded(b, last),
+            rounded(c, last),
+            rounded(d, last),
+        ];
+        // The same integers, from the same sum.
+        let numbers = (self + ROUNDER) - ROUNDER;
+        let (none, last) = (self.all(0.0), self.all(f64::from(last)));
+        (indices, numbers.larger(none).smaller(last))
     }
+
+    #[inline(always)]
+    fn from_each(self, list: &[f64], [a, b, c, d]: [usize; 4]) -> [Self; 4] {
+        let simd = self.simd;
+        let (a, b, c, d) = (
+            Self::from_slice(simd, &list[a..a + 4]),
+            Self::from_slice(simd, &list[b..b + 4]),
+            Self::from_slice(simd, &list[c..c + 4]),
+            Self::from_slice(simd, &list[d..d + 4]),
+        );
+        let (ac, bd) = (simd.zip_low_f64x4(a, c), simd.zip_low_f64x4(b, d));
+        let (ac_high, bd_high) = (simd.zip_high_f64x4(a, c), simd.zip_high_f64x4(b, d));
+        [
+            simd.zip_low_f64x4(ac, bd),
+            simd.zip_high_f64x4(ac, bd),
+            simd.zip_low_f64x4(ac_high, bd_high),
+            simd.zip_high_f64x4(ac_high, bd_high),
+        ]
+    }
+
+    #[inline(always)]
+    fn range_of(self, list: &[f64], first: [usize; 4], last: [usize; 4]) -> [Self; 2] {
+        let [a, b, c, d] = [
+            range_of(list, first[0], last[0]),
+            range_of(list, first[1], last[1]),
+            range_of(list, first[2], last[2]),
+            range_of(list, first[3], last[3]),
+        ];
+        [
+            Self::from_slice(self.simd, &[a[0], b[0], c[0], d[0]]),
+            Self::from_slice(self.simd, &[a[1], b[1], c[1], d[1]]),
+        ]
+    }
+}
+
+/// 1.5 · 2⁵²: a sum with it is rounded to an integer, which stands in its lowest bits.
+const ROUNDER: f64 = 6_755_399_441_055_744.0;
+
+/// Whatever the bits hold for what is no such integer, the index is none below 0 or above `last`.
+#[inline(always)]
+pub(crate) fn rounded(number: f64, last: i32) -> usize {
+    ((number + ROUNDER).to_bits() as i32).max(0).min(last) as usize
+}
+
+#[inline(always)]
+fn range_of(list: &[f64], first: usize, last: usize) -> [f64; 2] {
+    let (mut least, mut greatest) = (list[first], list[first]);
+    for &number in &list[first..=last] {
+        (least, greatest) = (least.min(number), greatest.max(number));
+    }
+    [least, greatest]
 }
 
 /// The instruction sets that `DARKNESS_SIMD` may name.

@@ -4,7 +4,7 @@ use super::Edge;
 use super::nodes::Nodes;
 use super::sight::Sight;
 use crate::lanes::Real;
-use crate::table::spline::{Jet, Scale, Stencil, bounds, jet, value, value_and_slope};
+use crate::table::spline::{Jet, Scale, Stencil, bounds, jet, thirds, value, value_and_slope};
 
 /// A quarter turn of both curves, as splines in x of `h` (or `x h` where h has a pole).
 #[derive(Debug, Clone)]
@@ -16,6 +16,8 @@ pub(super) struct Piece {
     pole: bool,
     inner: Vec<f64>,
     outer: Vec<f64>,
+    inner_thirds: Vec<f64>,
+    outer_thirds: Vec<f64>,
     /// No ray of this piece meets the disk with `h` below this
     pub(super) lowest: f64,
     /// or above this.
@@ -27,12 +29,16 @@ impl Piece {
     pub(super) fn new(order: u32, inner: &Nodes, outer: &Nodes) -> Self {
         let count = inner.count().max(outer.count());
         let finer = if inner.count() == count { inner } else { outer };
+        let axis = Scale::new(finer.axis());
+        let (inner, outer) = (inner.spline(count), outer.spline(count));
         let mut piece = Self {
             order,
-            axis: Scale::new(finer.axis()),
+            axis,
             pole: finer.quarter.pole,
-            inner: inner.spline(count),
-            outer: outer.spline(count),
+            inner_thirds: thirds(&inner, axis),
+            outer_thirds: thirds(&outer, axis),
+            inner,
+            outer,
             lowest: f64::INFINITY,
             highest: f64::NEG_INFINITY,
         };
@@ -92,7 +98,11 @@ impl Piece {
     /// One edge's spline about x, as far as `reach`.
     #[inline(always)]
     pub(super) fn jet<T: Real>(&self, edge: Edge, x: T, reach: T) -> Jet<T> {
-        jet(self.spline(edge), self.axis, x, reach)
+        let thirds = match edge {
+            Edge::Inner => &self.inner_thirds,
+            Edge::Outer => &self.outer_thirds,
+        };
+        jet(self.spline(edge), thirds, self.axis, x, reach)
     }
 
     /// Value and slope of one edge's spline at x.
@@ -121,7 +131,7 @@ impl Piece {
 
     /// How many bytes a frame reads of it.
     pub(super) fn bytes(&self) -> usize {
-        (self.inner.len() + self.outer.len()) * size_of::<f64>()
+        (2 * (self.inner.len() + self.outer.len()) - 6) * size_of::<f64>()
     }
 }
 

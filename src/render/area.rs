@@ -47,19 +47,39 @@ pub(super) fn share_of_band<T: Real>(band: &Band<T>, side: f64, like: T) -> T {
 pub(super) fn share_of_union(bands: &[Band], side: f64) -> f64 {
     let mut partial = [Band::default(); MOST_BANDS];
     let mut count = 0;
-    let mut share: f64 = 0.0;
+    let (mut share, mut sum): (f64, f64) = (0.0, 0.0);
     for band in bands {
         let of_band = share_of_band(band, side, 0.0);
         if of_band > 0.0 {
             share = share.max(of_band);
+            sum += of_band;
             partial[count] = *band;
             count += 1;
         }
     }
+    let partial = &partial[..count];
     if count <= 1 || share >= 1.0 {
         return share;
     }
-    (1.0 - off(&Polygon::square(side), &partial[..count]) / (side * side)).max(0.0)
+    let apart = |(i, a): (usize, &Band)| partial[..i].iter().all(|b| are_apart(a, b, side));
+    if partial.iter().enumerate().all(apart) {
+        return sum;
+    }
+    (1.0 - off(&Polygon::square(side), partial) / (side * side)).max(0.0)
+}
+
+/// Whether one of two bands' inner edges is so far within the other's outer one, all over a square, that they have
+/// nothing in common: where `g ≤ 0` for the one is `g < 0` for the other.
+fn are_apart(a: &Band, b: &Band, side: f64) -> bool {
+    let within = |inner: &Option<Line>, outer: &Option<Line>| match (inner, outer) {
+        (Some(inner), Some(outer)) => {
+            let reach =
+                (outer.per_column - inner.per_column).abs() + (outer.per_row - inner.per_row).abs();
+            outer.value - inner.value + 0.5 * side * reach <= 0.0
+        }
+        _ => false,
+    };
+    within(&a.inner, &b.outer) || within(&b.inner, &a.outer)
 }
 
 /// The share of a square of so many pixels' side that is on the positive side of `border` and in any of the bands; with

@@ -71,6 +71,7 @@ impl Pixels for Shares<'_> {
         reach: 0.5,
         // Measured as the cheapest.
         doubt: 0.1,
+        smallest: 1,
     };
 
     fn value(&self, column: usize, row: usize, open: Option<Open>) -> u8 {

@@ -55,6 +55,7 @@ impl Pixels for Hard<'_> {
         reach: 0.0,
         // Measured as the cheapest.
         doubt: 0.05,
+        smallest: 4,
     };
 
     fn value(&self, column: usize, row: usize, _: Option<Open>) -> u8 {

@@ -17,9 +17,6 @@ use crate::scene::View;
 /// The side of the largest tiles, in pixels.
 pub(super) const TILE: usize = 64;
 
-/// The side of the smallest tiles.
-const SMALLEST: usize = 4;
-
 /// How a frame's pixels look at their edges.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Kind {
@@ -28,6 +25,8 @@ pub(super) struct Kind {
     /// A tile is drawn from its edges' quadratics where what is not quadratic of them is below this, in pixels: a
     /// compromise between tiles and pixels to be asked.
     pub(super) doubt: f64,
+    /// The side of the smallest tiles, in pixels.
+    pub(super) smallest: usize,
 }
 
 /// What a frame's pixels are.
@@ -178,7 +177,7 @@ impl<P: Pixels> Filler<'_, P> {
         }
         for (tile, open) in tiles.into_iter().zip(split) {
             if let Some(open) = open {
-                if side <= SMALLEST {
+                if side <= P::KIND.smallest {
                     self.ask(band, tile, open);
                 } else {
                     self.split(band, tile, side, open);

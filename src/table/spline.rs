@@ -114,6 +114,19 @@ impl Scale {
         (cell as usize, t - f64::from(cell))
     }
 
+    /// A place in units of cells from the first node on.
+    #[inline(always)]
+    fn in_cells<T: Real>(self, x: T) -> T {
+        (x - self.start) * self.per_unit
+    }
+
+    /// The cells of such places, within the axis, and how much of them lies before.
+    #[inline(always)]
+    fn cells_and_shares<T: Real>(self, t: T) -> (T::Indices, T) {
+        let (cells, before) = (t - 0.5).rounded(self.last_cell);
+        (cells, t - before)
+    }
+
     /// The node nearest to `x`.
     #[inline(always)]
     pub(super) fn nearest(self, x: f64) -> usize {
@@ -190,12 +203,8 @@ pub(crate) struct Jet<T = f64> {
 /// A spline's value and slope at x.
 #[inline(always)]
 pub(crate) fn value_and_slope<T: Real>(coefficients: &[f64], axis: Scale, x: T) -> [T; 2] {
-    let [f, c0, c1, c2, c3] = x.map(x, |x, _| {
-        let (cell, f) = axis.cell_and_share(x);
-        let c = &coefficients[cell..cell + 4];
-        [f, c[0], c[1], c[2], c[3]]
-    });
-    within_cell(axis, f, [c0, c1, c2, c3])
+    let (cell, share) = axis.cells_and_shares(axis.in_cells(x));
+    within_cell(axis, share, x.from_each(coefficients, cell))
 }
 
 /// A spline's value and slope at a share of a cell, between the four coefficients about it.
@@ -212,36 +221,39 @@ fn within_cell<T: Real>(axis: Scale, f: T, [c0, c1, c2, c3]: [T; 4]) -> [T; 2] {
     [value, slope * (3.0 * axis.per_unit)]
 }
 
-/// A spline about x, as far as `reach`. Its third derivative is constant in each cell: the coefficients' third
-/// difference.
+/// A spline about x, as far as `reach`. Its third derivative is constant in each cell, of those that `thirds` is the list
+/// of.
 #[inline(always)]
-pub(crate) fn jet<T: Real>(coefficients: &[f64], axis: Scale, x: T, reach: T) -> Jet<T> {
-    let [f, c0, c1, c2, c3, least, greatest] = x.map(reach, |x, reach| {
-        let (cell, f) = axis.cell_and_share(x);
-        let c = &coefficients[cell..cell + 4];
-        let (low, _) = axis.cell_and_share(x - reach);
-        let (high, _) = axis.cell_and_share(x + reach);
-        let third = |c: &[f64]| (c[3] - c[0]) - 3.0 * (c[2] - c[1]);
-        let (mut least, mut greatest) = (third(c), third(c));
-        if low < high {
-            for c in coefficients[low..high + 4].windows(4) {
-                let third = third(c);
-                (least, greatest) = (least.min(third), greatest.max(third));
-            }
-        }
-        [f, c[0], c[1], c[2], c[3], least, greatest]
-    });
-    let [value, slope] = within_cell(axis, f, [c0, c1, c2, c3]);
-    let g = -(f - 1.0);
+pub(crate) fn jet<T: Real>(
+    coefficients: &[f64],
+    thirds: &[f64],
+    axis: Scale,
+    x: T,
+    reach: T,
+) -> Jet<T> {
+    let t = axis.in_cells(x);
+    let (cell, share) = axis.cells_and_shares(t);
+    let c = x.from_each(coefficients, cell);
+    let [value, slope] = within_cell(axis, share, c);
+    let [c0, c1, c2, c3] = c;
     let (first, second) = (c0 - c1 * 2.0 + c2, c1 - c2 * 2.0 + c3);
-    let scale = 6.0 * axis.per_unit * axis.per_unit;
-    let cube = scale * axis.per_unit;
+    let bend = (-(share - 1.0) * first + share * second) * (6.0 * axis.per_unit * axis.per_unit);
+    let reach = reach * axis.per_unit;
+    let (low, _) = axis.cells_and_shares(t - reach);
+    let (high, _) = axis.cells_and_shares(t + reach);
     Jet {
         value,
         slope,
-        bend: (g * first + f * second) * scale,
-        third: [least * cube, greatest * cube],
+        bend,
+        third: x.range_of(thirds, low, high),
     }
+}
+
+/// A spline's third derivatives, cell by cell: from the coefficients' third differences.
+pub(crate) fn thirds(coefficients: &[f64], axis: Scale) -> Vec<f64> {
+    let scale = 6.0 * axis.per_unit * axis.per_unit * axis.per_unit;
+    let third = |c: &[f64]| scale * ((c[3] - c[0]) - 3.0 * (c[2] - c[1]));
+    coefficients.windows(4).map(third).collect()
 }
 
 /// The values at two places of a spline of two variables, stored row by row: `rows` along the slow axis, `columns`
@@ -398,7 +410,7 @@ mod tests {
         let at = |x: f64| value(&c, &axis.stencil(x));
         for k in 2..58 {
             let x = -1.0 + f64::from(k) * 0.05 + 0.01;
-            let jet = jet(&c, axis, x, 0.071);
+            let jet = jet(&c, &thirds(&c, axis), axis, x, 0.071);
             assert_eq!(jet.value, at(x));
             let (before, after) = (at(x - 1e-4), at(x + 1e-4));
             assert!(
