@@ -70,7 +70,7 @@ impl Pixels for Shares<'_> {
     const KIND: Kind = Kind {
         reach: 0.5,
         // Measured as the cheapest.
-        doubt: 0.1,
+        doubt: 0.2,
         smallest: 1,
     };
 

@@ -54,7 +54,7 @@ impl Pixels for Hard<'_> {
     const KIND: Kind = Kind {
         reach: 0.0,
         // Measured as the cheapest.
-        doubt: 0.05,
+        doubt: 0.1,
         smallest: 4,
     };
 
