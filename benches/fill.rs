@@ -5,6 +5,7 @@
 mod interleaved;
 
 use darkness::isoradial::{Isoradials, Sight};
+use darkness::orbit::exact::Exact;
 use darkness::render::mask::render_into;
 use darkness::scene::{Scene, View, builtins};
 use darkness::table::{Spec, generate};
@@ -48,6 +49,10 @@ fn main() {
                             let drawn = render_into(&view, &curves, &mut frame, width);
                             drawn.map_or(0.0, |()| f64::from(frame[pixels / 2]))
                         }),
+                    },
+                    Contender {
+                        name: "the curves from exact",
+                        run: Box::new(|| Isoradials::new(&sight, &Exact).nodes() as f64),
                     },
                     Contender {
                         name: "the curves",
