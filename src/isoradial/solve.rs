@@ -152,25 +152,23 @@ impl<'a, A: SweptAngles> Target<'a, A> {
             self.first_guess(angle)
         };
         let near = self.bracket(angle, h, 1e-4);
-        let sharpened = near.slope.is_finite().then(|| {
-            let mut found = None;
-            for slope in [near.slope, -near.slope] {
-                // The bracket's slope is that of the angle that is missing, whichever way.
-                found = found.or_else(|| {
-                    let guess = Guess {
-                        h: near.h,
-                        slope,
-                        blur: f64::INFINITY,
-                    };
-                    self.converge(angle, guess, closeness, branch)
-                });
+        // Its slope is that of the angle that is missing: h rises with what a ray sweeps on its way out, and falls with
+        // what it sweeps on its way in.
+        for slope in [near.slope, -near.slope, near.slope, -near.slope] {
+            let guess = Guess {
+                h: near.h,
+                slope,
+                blur: f64::INFINITY,
+            };
+            if let Some(found) = self.converge(angle, guess, closeness, branch) {
+                return found;
             }
-            found
-        });
-        sharpened.flatten().unwrap_or_else(|| Found {
+            *branch = branch.other();
+        }
+        Found {
             h: self.bracket(angle, near.h, 1e-13).h,
             slope: f64::NAN,
-        })
+        }
     }
 
     /// Newton's step with the guess's slope, and secant steps after it; none where they do not settle.
@@ -206,10 +204,13 @@ impl<'a, A: SweptAngles> Target<'a, A> {
             let left = doubt * missing.abs();
             // The farthest of the two from straight across, where h is fewest radians, may not be there.
             let kappa = (self.critical + h).abs().min((self.critical + next).abs());
-            if left <= closeness.psi * (1.0 + kappa * kappa)
+            // Far away from the curve, where all rays are nearly straight, every estimate is small.
+            let near =
+                next.is_finite() && doubt <= 0.25 * slope.abs() && missing.abs() <= 0.25 * angle;
+            let close = left <= closeness.psi * (1.0 + kappa * kappa)
                 || left <= closeness.phi * slope.abs()
-                || (last.is_some() && step.abs() <= 1e-13 * h.abs())
-            {
+                || (last.is_some() && step.abs() <= 1e-13 * h.abs());
+            if near && close {
                 return Some(Found { h: next, slope });
             }
             last = Some((h, swept));
