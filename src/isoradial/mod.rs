@@ -72,7 +72,7 @@ pub enum Edge {
 /// What an edge may be off by, in pixels: its parts.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EdgeError {
-    /// Between the curves' nodes.
+    /// Between the curves' nodes, and of the nodes themselves.
     pub interpolation: f64,
     /// From the error of the angles that the curves were drawn from.
     pub angles: f64,

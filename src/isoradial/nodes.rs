@@ -7,6 +7,9 @@
 //! difference, in pixels, is what the nodes are doubled for until it is small enough. The error was nowhere over
 //! [`BETWEEN`] times as large (1.2, in 3,000 random scenes): that is what is promised.
 //!
+//! A guess of the truth in a cell's middle, its slope included, is the spline's own: one swept angle is enough for most
+//! of them (see `solve.rs`), which is solved for no more closely than [`SOLVED`] asks.
+//!
 //! The truth is itself only as good as the angles it is found from; an error δφ of an angle moves the curve by
 //! `|∂ψ/∂φ| δφ`, [`Nodes::sensitivity`] times δφ pixels at most.
 //!
@@ -31,7 +34,8 @@ const SETTLED_CELLS: usize = 128;
 /// Most cells of a piece. A disk to r = 1e6 bends its curve within 1e-3 of φ = π, which takes some thousands.
 const MOST_CELLS: usize = 1 << 14;
 
-/// What a node may be off by, over what the curve may: of 2⁷ its share is lost in the cells' own.
+/// What a node may be off by, over what the curve may. Four times as much is promised for it, 1/128 of the curve's: for
+/// the node, for the spline between two that are off (at most twice as much), and for the truth it is compared with.
 pub(super) const SOLVED: f64 = 1.0 / 512.0;
 
 /// What a node may be off by where a curve is only looked at, over the distance of two nodes.
@@ -209,7 +213,7 @@ impl Nodes {
         let mut branch = Branch::Direct;
         loop {
             let (finer, error) = nodes.refined(target, turns, shown, closeness, &mut branch);
-            // Of the nodes, of what runs between them (at most twice as much), of what it was compared with.
+            // See there.
             let error = error + 4.0 * solved;
             let settled = nodes.cells() >= SETTLED_CELLS
                 && error > 0.5 * nodes.interpolation
