@@ -2,8 +2,8 @@
 
 use super::Edge;
 use super::nodes::Nodes;
-use super::sight::Sight;
-use crate::table::spline::{Scale, Stencil, bounds, jet, value};
+use super::sight::Shown;
+use crate::table::spline::{Scale, Stencil, bounds, cell_bounds, jet, value};
 
 /// A quarter turn of both curves, as splines in x of `h` (or `x h` where h has a pole).
 #[derive(Debug, Clone)]
@@ -35,10 +35,21 @@ impl Piece {
             lowest: f64::INFINITY,
             highest: f64::NEG_INFINITY,
         };
-        for cell in 1..count {
-            let x = (finer.x(cell - 1), finer.x(cell));
-            piece.lowest = piece.lowest.min(piece.bounds(Edge::Outer, x).0);
-            piece.highest = piece.highest.max(piece.bounds(Edge::Inner, x).1);
+        let mut before = finer.x(0);
+        for cell in 0..count - 1 {
+            let x = (before, finer.x(cell + 1));
+            before = x.1;
+            let (outer, inner) = (
+                cell_bounds(&piece.outer, cell),
+                cell_bounds(&piece.inner, cell),
+            );
+            let (outer, inner) = if piece.pole {
+                (over(outer, x), over(inner, x))
+            } else {
+                (outer, inner)
+            };
+            piece.lowest = piece.lowest.min(outer.0);
+            piece.highest = piece.highest.max(inner.1);
         }
         piece
     }
@@ -102,7 +113,7 @@ impl Piece {
 }
 
 /// The greatest distance between two curves drawn over the same x, in pixels.
-pub(super) fn thickness(inner: &Nodes, outer: &Nodes, sight: &Sight) -> f64 {
+pub(super) fn thickness(inner: &Nodes, outer: &Nodes, shown: &Shown) -> f64 {
     let count = inner.count().min(outer.count());
     // Nodes are doubled: those of the coarser curve are nodes of the finer one too.
     let (step_inner, step_outer) = (
@@ -111,7 +122,7 @@ pub(super) fn thickness(inner: &Nodes, outer: &Nodes, sight: &Sight) -> f64 {
     );
     (0..count).fold(0.0, |thickness: f64, i| {
         let (high, low) = (inner.height(i * step_inner), outer.height(i * step_outer));
-        thickness.max(sight.pixels((low, high)))
+        shown.apart(thickness, (low.min(high), low.max(high)))
     })
 }
 

@@ -1,24 +1,59 @@
 //! One point of an isoradial curve: the slope that carries a ray to a radius in a given angle.
+//!
+//! # From a neighbour's slope
+//! A ray with `κ = κ_c + h` is a point of the curve itself: of the angle φ at which it meets the radius. So one swept
+//! angle tells how far the curve is off a guess, `h(φ*) = h + h′ (φ* − φ) + …`, and the slope h′ of the curve is known
+//! already from the nodes about it: no derivative of an angle is ever needed. If h′ is wrong by a share of
+//! `b |φ* − φ|`, what is left is `b |h′| (φ* − φ)²`; where that is too much, the next slope is the secant's, and what is
+//! left after it is at most what the two slopes disagree in.
 
 use super::{Edge, Sight};
 use crate::orbit::Fate;
 use crate::orbit::invariants::Orbit;
-use crate::orbit::path::{Crossings, SweptAngles};
+use crate::orbit::path::{Branch, Crossings, SweptAngles, ahead, turns};
 
 /// From where, to which radius.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Target {
+pub(super) struct Target<'a, A> {
     pub(super) u0: f64,
     pub(super) slope_scale: f64,
     /// κ of the critical ray.
     pub(super) critical: f64,
     /// Inverse radius to be met.
     pub(super) u_disk: f64,
+    angles: &'a A,
 }
 
-impl Target {
+/// Where a curve may be, and how steep.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Guess {
+    pub(super) h: f64,
+    /// dh/dφ; not a number where nothing is known of it.
+    pub(super) slope: f64,
+    /// By what share of itself the slope may be wrong for each radian that the guess is off.
+    pub(super) blur: f64,
+}
+
+/// A point of the curve.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Found {
+    pub(super) h: f64,
+    /// dh/dφ about there; not a number where nothing is known of it.
+    pub(super) slope: f64,
+}
+
+/// How right a point has to be: whichever is less strict.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Closeness {
+    /// In radians between rays.
+    pub(super) psi: f64,
+    /// In radians of φ; of the coarsest nodes, over the distance to the next.
+    pub(super) phi: f64,
+}
+
+impl<'a, A: SweptAngles> Target<'a, A> {
     /// An edge of the disk, seen by the camera of `sight`.
-    pub(super) fn new(sight: &Sight, edge: Edge) -> Self {
+    pub(super) fn new(sight: &Sight, edge: Edge, angles: &'a A) -> Self {
         Self {
             u0: sight.u0,
             slope_scale: sight.slope_scale,
@@ -27,6 +62,7 @@ impl Target {
                 Edge::Inner => sight.u_inner,
                 Edge::Outer => sight.u_outer,
             },
+            angles,
         }
     }
 
@@ -42,6 +78,7 @@ impl Target {
     }
 
     /// The orbit with `κ = κ_c + h`. `Δ = (w − w_c)(w + w_c)` from h itself: exact however close to critical.
+    #[inline]
     fn orbit(&self, h: f64) -> Orbit {
         let excess = self.slope_scale * h;
         let critical = self.slope_scale * self.critical;
@@ -55,9 +92,9 @@ impl Target {
     /// Positive where the ray of `h` is closer to the hole than the radius sought when it has swept `angle`; rises
     /// with h (see the [module above](super)), through zero where it is just there. The size is the angle that is
     /// missing. Infinite where the ray never meets the radius.
-    fn residual(&self, h: f64, angle: f64, angles: &impl SweptAngles) -> f64 {
+    fn residual(&self, h: f64, angle: f64) -> f64 {
         let orbit = self.orbit(h);
-        let Crossings { inbound, outbound } = angles.crossings(&orbit, self.u_disk);
+        let Crossings { inbound, outbound } = self.angles.crossings(&orbit, self.u_disk);
         match (inbound, outbound) {
             (Some(enter), Some(leave)) => (angle - enter).min(leave - angle),
             (Some(enter), None) => angle - enter,
@@ -68,11 +105,126 @@ impl Target {
         }
     }
 
-    /// The h with which a ray meets the radius at `angle`, found from a guess.
+    /// The angle at which the ray of `h` meets the radius: where it does so twice, the way that `branch` says, which is
+    /// set to the way that was taken.
+    #[inline]
+    fn swept(&self, h: f64, branch: &mut Branch) -> Option<f64> {
+        let orbit = self.orbit(h);
+        let point = orbit.point_at(self.u_disk)?;
+        let taken = match (ahead(&orbit, self.u_disk), turns(&orbit)) {
+            (true, true) => *branch,
+            (true, false) => Branch::Direct,
+            (false, true) => Branch::Around,
+            (false, false) => return None,
+        };
+        *branch = taken;
+        Some(match taken {
+            Branch::Direct => self.angles.direct(&orbit, orbit.start, point),
+            Branch::Around => self.angles.around(&orbit, orbit.start, point),
+        })
+    }
+
+    /// What is kept at x = 0 in the piece with the pole: φ → 0, where `w φ → u_d − u0`, and x ~ φ.
+    pub(super) fn at_pole(&self) -> f64 {
+        (self.u_disk - self.u0) / self.slope_scale
+    }
+
+    /// The ray that meets the radius at `angle`, from a guess of it: see the [module's page](self). `branch` is the
+    /// way that the neighbours take.
+    pub(super) fn follow(
+        &self,
+        angle: f64,
+        guess: Guess,
+        closeness: Closeness,
+        branch: &mut Branch,
+    ) -> Found {
+        // Where both ways meet, the rays graze the radius: if it was not the one way, it may be the other now.
+        let tries = if guess.slope.is_nan() { 0 } else { 2 };
+        for _ in 0..tries {
+            if let Some(found) = self.converge(angle, guess, closeness, branch) {
+                return found;
+            }
+            *branch = branch.other();
+        }
+        let h = if guess.h.is_finite() {
+            guess.h
+        } else {
+            self.first_guess(angle)
+        };
+        let near = self.bracket(angle, h, 1e-4);
+        let sharpened = near.slope.is_finite().then(|| {
+            let mut found = None;
+            for slope in [near.slope, -near.slope] {
+                // The bracket's slope is that of the angle that is missing, whichever way.
+                found = found.or_else(|| {
+                    let guess = Guess {
+                        h: near.h,
+                        slope,
+                        blur: f64::INFINITY,
+                    };
+                    self.converge(angle, guess, closeness, branch)
+                });
+            }
+            found
+        });
+        sharpened.flatten().unwrap_or_else(|| Found {
+            h: self.bracket(angle, near.h, 1e-13).h,
+            slope: f64::NAN,
+        })
+    }
+
+    /// Newton's step with the guess's slope, and secant steps after it; none where they do not settle.
+    #[inline]
+    fn converge(
+        &self,
+        angle: f64,
+        guess: Guess,
+        closeness: Closeness,
+        branch: &mut Branch,
+    ) -> Option<Found> {
+        /// A secant that has not settled by then will not.
+        const STEPS: usize = 8;
+        let Guess {
+            mut h,
+            mut slope,
+            blur,
+        } = guess;
+        let mut last: Option<(f64, f64)> = None;
+        for _ in 0..STEPS {
+            let swept = self.swept(h, branch)?;
+            let missing = angle - swept;
+            let doubt = if let Some((h0, swept0)) = last {
+                let secant = (h - h0) / (swept - swept0);
+                let doubt = (secant - slope).abs();
+                slope = secant;
+                doubt
+            } else {
+                blur * (slope * missing).abs()
+            };
+            let step = slope * missing;
+            let next = h + step;
+            let left = doubt * missing.abs();
+            // The farthest of the two from straight across, where h is fewest radians, may not be there.
+            let kappa = (self.critical + h).abs().min((self.critical + next).abs());
+            if left <= closeness.psi * (1.0 + kappa * kappa)
+                || left <= closeness.phi * slope.abs()
+                || (last.is_some() && step.abs() <= 1e-13 * h.abs())
+            {
+                return Some(Found { h: next, slope });
+            }
+            last = Some((h, swept));
+            h = next;
+        }
+        None
+    }
+
+    /// The h with which a ray meets the radius at `angle`, found from a guess, to the share `close` of itself.
     ///
     /// Secant steps, kept within the bracket that the residuals' signs have shown so far; bisection, or doubling the
     /// step where one end is not known yet, wherever the secant leaves it or the residual is infinite.
-    pub(super) fn solve(&self, angle: f64, guess: f64, angles: &impl SweptAngles) -> f64 {
+    ///
+    /// Its slope is that of h over the residual.
+    pub(super) fn bracket(&self, angle: f64, guess: f64, close: f64) -> Found {
         const STEPS: usize = 200;
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
         let scale = if guess == 0.0 {
@@ -83,10 +235,11 @@ impl Target {
         let mut stride = 1e-4 * scale;
         let mut previous: Option<(f64, f64)> = None;
         let mut h = guess;
+        let mut slope = f64::NAN;
         for step in 0..STEPS {
-            let residual = self.residual(h, angle, angles);
+            let residual = self.residual(h, angle);
             if residual == 0.0 {
-                return h;
+                return Found { h, slope };
             }
             if residual < 0.0 {
                 low = low.max(h);
@@ -94,6 +247,7 @@ impl Target {
                 high = high.min(h);
             }
             let secant = previous.and_then(|(h0, r0)| {
+                slope = (h - h0) / (residual - r0);
                 let next = h - residual * (h - h0) / (residual - r0);
                 // A last step that changes nothing is an answer, bracket or no bracket.
                 (next.is_finite() && ((next > low && next < high) || next == h)).then_some(next)
@@ -117,10 +271,10 @@ impl Target {
             // Where the residual bends like a root (a ray that grazes the radius) the secant's error is of the size
             // of its step.
             let bracketed = high - low <= 4.0 * f64::EPSILON * h.abs();
-            if (secant == Some(next) && change <= 1e-13 * h.abs()) || bracketed {
-                return h;
+            if (secant == Some(next) && change <= close * h.abs()) || bracketed {
+                break;
             }
         }
-        h
+        Found { h, slope }
     }
 }

@@ -62,8 +62,27 @@ pub trait SweptAngles: Sync {
     }
 }
 
+/// The two ways from an orbit's start to a radius.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Branch {
+    /// Straight there.
+    Direct,
+    /// Over the turning point.
+    Around,
+}
+
+impl Branch {
+    /// The other one.
+    pub(crate) fn other(self) -> Self {
+        match self {
+            Self::Direct => Self::Around,
+            Self::Around => Self::Direct,
+        }
+    }
+}
+
 /// Whether the orbit leaves its start towards inverse radius `u`.
-fn ahead(orbit: &Orbit, u: f64) -> bool {
+pub(crate) fn ahead(orbit: &Orbit, u: f64) -> bool {
     if orbit.inward {
         u > orbit.start.u
     } else {
@@ -72,7 +91,7 @@ fn ahead(orbit: &Orbit, u: f64) -> bool {
 }
 
 /// Whether the orbit's turning point is still ahead of its start.
-fn turns(orbit: &Orbit) -> bool {
+pub(crate) fn turns(orbit: &Orbit) -> bool {
     match orbit.family {
         Family::Monotone => false,
         Family::Scattered => orbit.inward,

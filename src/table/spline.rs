@@ -174,6 +174,19 @@ pub(crate) fn bounds(coefficients: &[f64], axis: Scale, x: (f64, f64)) -> (f64, 
     (ends.0.min(ends.1) - margin, ends.0.max(ends.1) + margin)
 }
 
+/// Bounds of a spline of one variable within a cell, as [`bounds`] has them.
+#[inline]
+pub(crate) fn cell_bounds(coefficients: &[f64], cell: usize) -> (f64, f64) {
+    let c = &coefficients[cell..cell + 4];
+    let ends = (c[0] + 4.0 * c[1] + c[2], c[1] + 4.0 * c[2] + c[3]);
+    let bend = (c[0] - 2.0 * c[1] + c[2])
+        .abs()
+        .max((c[1] - 2.0 * c[2] + c[3]).abs());
+    let size = (c[0].abs().max(c[1].abs())).max(c[2].abs().max(c[3].abs()));
+    let margin = 6.0 * (bend / 8.0 + 16.0 * f64::EPSILON * size);
+    (ends.0.min(ends.1) - margin, ends.0.max(ends.1) + margin)
+}
+
 /// A spline's value and slope at x, and the largest size of its second derivative within `reach` of x: that is linear
 /// within each cell, between the coefficients' second differences.
 #[inline]
@@ -246,6 +259,30 @@ fn across_rows(
     let high = (wa * f64x2::new([a[2], a[3]]) + wb * f64x2::new([b[2], b[3]]))
         + (wc * f64x2::new([c[2], c[3]]) + wd * f64x2::new([d[2], d[3]]));
     [low.to_array(), high.to_array()]
+}
+
+/// A spline's value, slope and second derivative in the middle of a cell, for cells as wide as one.
+#[inline]
+pub(crate) fn in_the_middle(coefficients: &[f64], cell: usize) -> (f64, f64, f64) {
+    let c = &coefficients[cell..cell + 4];
+    let (outer, inner) = (c[0] + c[3], c[1] + c[2]);
+    (
+        0.125 * outer + 2.875 * inner,
+        0.75 * (c[3] - c[0]) + 3.75 * (c[2] - c[1]),
+        3.0 * (outer - inner),
+    )
+}
+
+/// A spline's value in the middle of a half of a cell; the halves are counted through.
+#[inline]
+pub(crate) fn in_a_quarter(coefficients: &[f64], half: usize) -> f64 {
+    let c = &coefficients[half / 2..half / 2 + 4];
+    let [near, first, second, far] = weights(0.25);
+    if half.is_multiple_of(2) {
+        (near * c[0] + first * c[1]) + (second * c[2] + far * c[3])
+    } else {
+        (far * c[0] + second * c[1]) + (first * c[2] + near * c[3])
+    }
 }
 
 /// The B-spline coefficients of the spline through `values`, one per node, over 6; `values.len() + 2` of them. (The
