@@ -6,7 +6,7 @@ mod interleaved;
 
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
-use darkness::render::mask::render_into;
+use darkness::render::{coverage, mask};
 use darkness::scene::{Scene, View, builtins};
 use darkness::table::{Spec, generate};
 use interleaved::{Contender, compare};
@@ -30,6 +30,7 @@ fn main() {
             let pixels = view.width() as usize * view.height() as usize;
             let mut bytes = vec![0_u8; pixels];
             let mut frame = vec![0_u8; pixels];
+            let mut smooth = vec![0_u8; pixels];
             compare(
                 &format!("{}, time per pixel", builtin.name()),
                 pixels,
@@ -46,8 +47,16 @@ fn main() {
                         name: "hard edges",
                         run: Box::new(|| {
                             let width = view.width() as usize;
-                            let drawn = render_into(&view, &curves, &mut frame, width);
+                            let drawn = mask::render_into(&view, &curves, &mut frame, width);
                             drawn.map_or(0.0, |()| f64::from(frame[pixels / 2]))
+                        }),
+                    },
+                    Contender {
+                        name: "smooth edges",
+                        run: Box::new(|| {
+                            let width = view.width() as usize;
+                            let drawn = coverage::render_into(&view, &curves, &mut smooth, width);
+                            drawn.map_or(0.0, |()| f64::from(smooth[pixels / 2]))
                         }),
                     },
                     Contender {

@@ -175,6 +175,10 @@ fn tolerances_that_make_no_sense_are_misuse() {
             &["--explain", "--method", "integrate"],
             "--explain is about isoradial curves",
         ),
+        (
+            &["--antialias", "true", "--method", "exact"],
+            "--antialias is about isoradial curves",
+        ),
         (&["--explain", "-o", "x.png"], "--explain"),
     ] {
         refused(
@@ -206,7 +210,8 @@ fn other_methods_need_no_table_and_draw_the_same_picture() {
         done(command);
     }
     assert_eq!(listing(here), ["e.png", "i.png", "j.PNG"]);
-    done(darkness(here, &["render", "--size", SMALL, "-o", "t.png"]));
+    let hard = ["--antialias", "false", "--size", SMALL, "-o", "t.png"];
+    done(darkness(here, &[&["render"][..], &hard].concat()));
     let pixels = |name: &str| image::open(here.join(name)).unwrap().into_luma8();
     for name in ["i.png", "j.PNG", "t.png"] {
         let pairs = pixels("e.png").into_raw().into_iter();

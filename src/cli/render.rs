@@ -1,7 +1,8 @@
 //! `darkness render`: a scene's picture.
 
+use std::io::{self, Write};
 use std::path::PathBuf;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::Args;
 
@@ -15,7 +16,7 @@ use crate::orbit::Orbits;
 use crate::orbit::exact::Exact;
 use crate::orbit::path::SweptAngles;
 use crate::render::needs::Needs;
-use crate::render::{RenderError, mask, pixelwise};
+use crate::render::{RenderError, coverage, cull, mask, pixelwise};
 use crate::scene::{DEFAULT_SCENE, Scene, View};
 
 /// Render a scene as a PNG picture
@@ -37,6 +38,13 @@ pub(super) struct RenderArgs {
     /// What an edge may be off by, in pixels, above 0 and at most 1, in place of the scene's
     #[arg(long, value_name = "PIXELS", allow_negative_numbers = true)]
     tolerance: Option<f64>,
+    /// Smooth edges: each pixel is the share of its square that the disk covers; with false, what its centre sees. In
+    /// place of the scene's; the methods that follow single rays know hard edges only
+    #[arg(long, value_name = "true|false", action = clap::ArgAction::Set)]
+    antialias: Option<bool>,
+    /// Tell what each part of the work took: curves, culling, edges, encoding
+    #[arg(long, conflicts_with = "explain")]
+    timings: bool,
     /// Tell what the picture needs and what it does not, and draw nothing
     #[arg(long, conflicts_with = "output")]
     explain: bool,
@@ -74,9 +82,15 @@ pub(super) fn run(args: &RenderArgs, report: Report) -> anyhow::Result<()> {
     };
     let start = Instant::now();
     let pixels = draw(&scene, &view, &needs, &method, report)?;
-    let time = duration(start.elapsed());
+    let drawn = start.elapsed();
+    let time = duration(drawn);
     let size = scene.image();
+    let start = Instant::now();
     destination.write_png(&pixels, size)?;
+    let written = start.elapsed();
+    if args.timings {
+        tell_timings(&scene, &view, &needs, &method, (drawn, written))?;
+    }
     report.note(format_args!(
         "{destination}: {} × {}, {method}, drawn in {time}",
         size.width, size.height
@@ -89,6 +103,8 @@ fn scene(args: &RenderArgs) -> anyhow::Result<Scene> {
     for (given, flag) in [
         (args.tolerance.is_some(), "tolerance"),
         (args.explain, "explain"),
+        (args.antialias == Some(true), "antialias"),
+        (args.timings, "timings"),
     ] {
         if given && !args.method.is_table() {
             return Err(Misuse::CurvesUnused { flag }.into());
@@ -104,10 +120,53 @@ fn scene(args: &RenderArgs) -> anyhow::Result<Scene> {
                 source,
             })?;
     }
+    if let Some(antialias) = args.antialias {
+        scene = scene.with_antialias(antialias);
+    }
     if let Some(pixels) = args.tolerance {
         scene = scene.with_tolerance(pixels).map_err(Misuse::Tolerance)?;
     }
     Ok(scene)
+}
+
+/// Tells what the parts of a picture from curves took. Curves, culling and edges are done once more by themselves, when
+/// the caches are warm and the memory is there.
+fn tell_timings(
+    scene: &Scene,
+    view: &View,
+    needs: &Needs,
+    method: &Method,
+    (drawn, written): (Duration, Duration),
+) -> anyhow::Result<()> {
+    let start = Instant::now();
+    let curves = match method {
+        Method::Table(table) => Isoradials::new(&needs.sight, &table.lookup()),
+        _ => Isoradials::new(&needs.sight, &Exact),
+    };
+    let for_curves = start.elapsed();
+    let mut pixels = mask::render(view, &curves)?;
+    let start = Instant::now();
+    cull(view, &curves, scene.antialias(), &mut pixels)?;
+    let for_culling = start.elapsed();
+    let start = Instant::now();
+    if scene.antialias() {
+        coverage::render_into(view, &curves, &mut pixels, view.width() as usize)?;
+    } else {
+        mask::render_into(view, &curves, &mut pixels, view.width() as usize)?;
+    }
+    let for_frame = start.elapsed();
+    let lines = [
+        ("curves", for_curves),
+        ("culling", for_culling),
+        ("edges", for_frame.saturating_sub(for_culling)),
+        ("encoding and writing", written),
+        ("all but that, for the first time", drawn),
+    ];
+    let mut stderr = io::stderr();
+    for (name, time) in lines {
+        let _ = writeln!(stderr, "{:>10}  {name}", duration(time));
+    }
+    Ok(())
 }
 
 /// The scene's pixels: from isoradial curves with a table, else ray by ray.
@@ -137,14 +196,18 @@ fn by_curves(
     let (error, allowed) = (curves.error(), scene.tolerance());
     if is_unresolved(error, allowed) {
         report.note(format_args!(
-            "the isoradial curves of this view are only right to {:.1e} pixels, so every pixel's ray is followed by itself, which takes a hundred times as long",
+            "the isoradial curves of this view are only right to {:.1e} pixels, so every pixel's ray is followed by itself, which takes a hundred times as long and leaves hard edges",
             error.total()
         ));
         warn_of(error.angles + error.rounding, error, needs, report);
         return ray_by_ray(scene, view, angles, report);
     }
     warn_of(error.total(), error, needs, report);
-    mask::render(view, &curves)
+    if scene.antialias() {
+        coverage::render(view, &curves)
+    } else {
+        mask::render(view, &curves)
+    }
 }
 
 /// Says what an edge may be off by where that is more than was asked for, and what would help.

@@ -35,6 +35,17 @@ pub enum Uniform {
     Miss,
 }
 
+impl OpenBand {
+    /// A band between two edges, each of them if it is open.
+    pub fn new(outer: Option<Line>, inner: Option<Line>) -> Self {
+        Self {
+            piece: 0,
+            inner,
+            outer,
+        }
+    }
+}
+
 impl Open {
     /// The bands that are open.
     pub fn bands(&self) -> &[OpenBand] {

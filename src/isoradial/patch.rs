@@ -100,6 +100,47 @@ impl Patch {
         columns: (f64, f64),
         rows: (f64, f64),
     ) -> Option<Self> {
+        Self::of(view, curves, columns, rows, None)
+    }
+
+    /// The same of those rays of a rectangle that meet the plane in one of the quarter turns, 0 or 1; with the curves
+    /// continued a little beyond it. None too where that is no little way, close to the disk's plane.
+    pub fn in_quarter(
+        view: &View,
+        curves: &Isoradials,
+        columns: (f64, f64),
+        rows: (f64, f64),
+        quarter: usize,
+    ) -> Option<Self> {
+        Self::of(view, curves, columns, rows, Some(quarter))
+    }
+
+    /// Where in a rectangle the rays meet the plane at a quarter turn, D = 0: positive in the first one.
+    pub fn border(view: &View, columns: (f64, f64), rows: (f64, f64)) -> Line {
+        let (x, y) = (
+            view.x_at(0.5 * (columns.0 + columns.1)),
+            view.y_at(0.5 * (rows.0 + rows.1)),
+        );
+        let exactly = |middle| Interval {
+            middle,
+            radius: 0.0,
+        };
+        let (d, pixel) = (view.plane_slope(), view.pixel_side());
+        Line {
+            value: exactly(d * view.ta().at(x, y)),
+            per_column: exactly(d * view.ta().per_x * pixel),
+            per_row: exactly(-d * view.ta().per_y * pixel),
+        }
+    }
+
+    #[inline]
+    fn of(
+        view: &View,
+        curves: &Isoradials,
+        columns: (f64, f64),
+        rows: (f64, f64),
+        wanted: Option<usize>,
+    ) -> Option<Self> {
         let (z, ta, tb) = (view.z(), view.ta(), view.tb());
         let (x, y) = (
             view.x_at(0.5 * (columns.0 + columns.1)),
@@ -131,25 +172,26 @@ impl Patch {
             },
         );
         let (n, d) = (view.n_p().abs(), view.plane_slope());
-        // |D|/s, and how far it is from 0.
-        let size = (d * ca.middle).abs();
+        // |D|/s, less than 0 beyond the quarter turn's end.
+        let quarter = wanted.unwrap_or(usize::from(d * ca.middle < 0.0));
+        let size = d * if quarter == 0 { ca.middle } else { -ca.middle };
         let least = size - d.abs() * spread;
-        if least <= 0.0 && d != 0.0 {
+        let near = match wanted {
+            None if least <= 0.0 && d != 0.0 => return None,
+            None => n + least.max(0.0),
+            // In the plane x is 0 or 1 all over the quarter turn.
+            Some(_) if n == 0.0 => d.abs(),
+            Some(_) => n + least,
+        };
+        if near <= 0.5 * n || near == 0.0 {
             return None;
         }
-        let quarter = usize::from(d * ca.middle < 0.0);
-        let (near, middle, far) = (
-            n + least.max(0.0),
-            n + size,
-            n + (size + d.abs() * spread).min(d.abs()),
-        );
-        if near <= 0.0 {
-            return None;
-        }
+        let far = n + (size + d.abs() * spread).min(d.abs());
+        let middle = if n == 0.0 { size.abs() } else { n + size };
         let share = if quarter == 0 {
             n / middle
         } else {
-            size / middle
+            1.0 - n / middle
         };
         // N D₁/(N + |D|)² between its ends; x changes by it times the change of c_a.
         let factor = n * d;
@@ -263,9 +305,9 @@ impl Line {
 }
 
 impl Piece {
-    /// h at x, and h′ within `reach` of x; the radius of h is that of the whole way.
+    /// h and h′ within `reach` of x.
     #[inline]
-    fn height_and_slope(&self, edge: Edge, x: f64, reach: f64) -> (Interval, Interval) {
+    pub(super) fn height_and_slope(&self, edge: Edge, x: f64, reach: f64) -> (Interval, Interval) {
         let (value, slope, bend) = self.jet(edge, x, reach);
         let slope = Interval {
             middle: slope,
@@ -296,6 +338,106 @@ impl Piece {
             middle: slope.middle - height.middle,
             radius: slope.radius + height.radius,
         };
-        (height, rise.times(inverse))
+        let slope = rise.times(inverse);
+        // By the mean value theorem, where the quotient of the two intervals forgets what f and x have in common.
+        let height = Interval {
+            middle: height.middle,
+            radius: height.radius.min(slope.most() * reach),
+        };
+        (height, slope)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::isoradial::{Sight, place};
+    use crate::orbit::exact::Exact;
+    use crate::scene::{Scene, builtins};
+
+    /// g of an edge at a place of the picture, as [`Isoradials::meets`] has it.
+    fn g(view: &View, curves: &Isoradials, piece: &Piece, edge: Edge, at: (f64, f64)) -> f64 {
+        let ray = view.ray_at(view.x_at(at.0), view.y_at(at.1));
+        let s = ray.transverse();
+        let x = place(view.n_p().abs() * s, view.plane_slope() * ray.ta);
+        ray.z - curves.critical() * s - s * piece.height(edge, x)
+    }
+
+    /// Every edge of every order over rectangles of all sizes and places: g is within the line's bounds, which are
+    /// nowhere so wide that they would say nothing.
+    #[test]
+    fn lines_hold_the_edges() {
+        let mut state = 1_u64;
+        let mut random = |range: f64| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            range * ((state >> 11) as f64 / (1_u64 << 53) as f64)
+        };
+        for builtin in builtins() {
+            let scene = Scene::builtin(builtin.name()).unwrap();
+            let view = View::new(&scene);
+            let curves = Isoradials::new(&Sight::new(&scene, &view, 1e-3), &Exact);
+            let (width, height) = (f64::from(view.width()), f64::from(view.height()));
+            let mut looked_at = 0;
+            for _ in 0..3000 {
+                let side = libm::exp2(random(6.0));
+                let (left, top) = (random(width - side), random(height - side));
+                let (columns, rows) = ((left, left + side), (top, top + side));
+                let Some(patch) = Patch::new(&view, &curves, columns, rows) else {
+                    continue;
+                };
+                for piece in curves.quarter(patch.quarter()) {
+                    for edge in [Edge::Inner, Edge::Outer] {
+                        let line = patch.line(piece, edge, curves.critical());
+                        for _ in 0..4 {
+                            let (dx, dy) = (random(side) - 0.5 * side, random(side) - 0.5 * side);
+                            let at = (left + 0.5 * side + dx, top + 0.5 * side + dy);
+                            let truth = g(&view, &curves, piece, edge, at);
+                            let middle = line.value.middle
+                                + line.per_column.middle * dx
+                                + line.per_row.middle * dy;
+                            let radius = line.value.radius
+                                + line.per_column.radius * dx.abs()
+                                + line.per_row.radius * dy.abs();
+                            assert!(
+                                (truth - middle).abs() <= radius
+                                    || truth == middle
+                                    || radius.is_nan(),
+                                "{}: {truth} at {at:?}, not {middle} ± {radius}: {line:?}",
+                                builtin.name()
+                            );
+                            looked_at += usize::from(radius.is_finite() && truth.is_finite());
+                        }
+                    }
+                }
+            }
+            assert!(looked_at > 10_000, "{}: {looked_at}", builtin.name());
+        }
+    }
+
+    /// The part that is not linear falls with the square of the side.
+    #[test]
+    fn what_is_not_linear_falls_with_the_square() {
+        let scene = Scene::builtin("classic").unwrap();
+        let view = View::new(&scene);
+        let curves = Isoradials::new(&Sight::new(&scene, &view, 1e-3), &Exact);
+        let bend = |side: f64| {
+            let patch = Patch::new(
+                &view,
+                &curves,
+                (1500.0, 1500.0 + side),
+                (400.0, 400.0 + side),
+            );
+            let patch = patch.unwrap();
+            let line = patch.line(
+                &curves.quarter(patch.quarter())[0],
+                Edge::Outer,
+                curves.critical(),
+            );
+            (line.per_column.radius + line.per_row.radius) * 0.5 * side
+        };
+        let ratio = bend(16.0) / bend(8.0);
+        assert!((3.5..4.6).contains(&ratio), "{ratio}");
     }
 }

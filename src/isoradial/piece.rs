@@ -13,8 +13,8 @@ pub(super) struct Piece {
     axis: Scale,
     /// Whether h has a pole at x = 0, and `x h` is kept.
     pole: bool,
-    pub(super) inner: Vec<f64>,
-    pub(super) outer: Vec<f64>,
+    inner: Vec<f64>,
+    outer: Vec<f64>,
     /// No ray of this piece meets the disk with `h` below this
     pub(super) lowest: f64,
     /// or above this.
@@ -55,9 +55,16 @@ impl Piece {
     }
 
     /// Bounds of h over an interval of x.
-    pub(super) fn bounds(&self, coefficients: &[f64], x: (f64, f64)) -> (f64, f64) {
-        let values = bounds(coefficients, self.axis, x);
-        if self.pole { over(values, x) } else { values }
+    pub(super) fn bounds(&self, edge: Edge, x: (f64, f64)) -> (f64, f64) {
+        let values = bounds(self.spline(edge), self.axis, x);
+        if !self.pole {
+            return values;
+        }
+        // Both ways are right, and the narrower of the two depends on how near the pole is.
+        let (low, high) = over(values, x);
+        let (h, _) = self.height_and_slope(edge, 0.5 * (x.0 + x.1), 0.5 * (x.1 - x.0));
+        let radius = h.radius + 16.0 * f64::EPSILON * h.middle.abs();
+        (low.max(h.middle - radius), high.min(h.middle + radius))
     }
 
     /// Whether a ray with `z − κ_c s = excess` meets the disk at x.

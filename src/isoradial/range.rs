@@ -1,7 +1,7 @@
 //! What a whole bundle of rays meets: the curves' bounds against the bundle's.
 
-use super::Isoradials;
 use super::piece::Piece;
+use super::{Edge, Isoradials};
 use crate::scene::{Affine, View};
 
 /// What is known of a bundle of rays: an interval for `z/s`, and one for `D/N`, the cotangent of φ₁ (see [the module
@@ -138,7 +138,7 @@ impl Isoradials {
 
 impl Piece {
     fn verdict(&self, h: (f64, f64), x: (f64, f64)) -> Verdict {
-        let (inner, outer) = (self.bounds(&self.inner, x), self.bounds(&self.outer, x));
+        let (inner, outer) = (self.bounds(Edge::Inner, x), self.bounds(Edge::Outer, x));
         if h.0 >= outer.1 && h.1 <= inner.0 {
             Verdict::Hit
         } else if h.1 < outer.0 || h.0 > inner.1 {

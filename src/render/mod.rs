@@ -1,10 +1,17 @@
-//! Frames: white where a pixel's centre sees the disk at any order, black elsewhere.
+//! Frames: what a pixel's centre sees, white where that is the disk at any order ([`mask`], [`pixelwise`]), or the share
+//! of its square that the disk covers ([`coverage`]).
 
+mod area;
+pub mod coverage;
 pub mod mask;
 pub mod needs;
 pub mod pixelwise;
 pub mod png;
 mod tiles;
+
+pub use tiles::cull;
+
+use rayon::prelude::*;
 
 use crate::orbit::OrbitError;
 use crate::scene::View;
@@ -41,6 +48,23 @@ pub enum RenderError {
     /// A ray could not be followed.
     #[error(transparent)]
     Orbit(#[from] OrbitError),
+}
+
+/// A frame of which each pixel (column, row) is found by itself.
+fn each_pixel(
+    view: &View,
+    value: impl Fn(usize, usize) -> u8 + Sync,
+) -> Result<Vec<u8>, RenderError> {
+    let mut pixels = blank(view)?;
+    pixels
+        .par_chunks_exact_mut(view.width() as usize)
+        .enumerate()
+        .for_each(|(row, pixels)| {
+            for (column, pixel) in pixels.iter_mut().enumerate() {
+                *pixel = value(column, row);
+            }
+        });
+    Ok(pixels)
 }
 
 /// A black frame.

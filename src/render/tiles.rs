@@ -6,36 +6,36 @@
 //! a small share of a pixel, each row of pixels is cut at the edges' lines: into pixels that are decided for certain,
 //! and those that are asked one by one.
 
+use rayon::prelude::*;
+
+use super::RenderError;
 use crate::isoradial::{Bundle, Isoradials, Line, Open, Patch, Uniform, Verdict};
 use crate::render::mask::WHITE;
 use crate::scene::View;
 
 /// The side of the largest tiles, in pixels.
-pub(super) const TILE: usize = 64;
+const TILE: usize = 64;
 
 /// The side of the smallest tiles.
 const SMALLEST: usize = 4;
 
-/// A tile is cut into rows where what is not linear of its edges is below this, in pixels.
-const STRAIGHT: f64 = 1.2;
-
 /// A band of a frame's rows.
-pub(super) struct Band<'a> {
+struct Band<'a> {
     /// Their pixels.
-    pub(super) pixels: &'a mut [u8],
+    pixels: &'a mut [u8],
     /// From one row to the next.
-    pub(super) stride: usize,
+    stride: usize,
     /// The first row's place in the frame.
-    pub(super) first: usize,
+    first: usize,
 }
 
 /// A rectangle of a band's pixels.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Tile {
-    pub(super) left: usize,
-    pub(super) top: usize,
-    pub(super) width: usize,
-    pub(super) height: usize,
+struct Tile {
+    left: usize,
+    top: usize,
+    width: usize,
+    height: usize,
 }
 
 /// How a frame is filled.
@@ -44,36 +44,120 @@ pub(super) struct Filler<'a, P> {
     pub(super) curves: &'a Isoradials,
     /// How far from its centre a pixel looks to either side, in pixels: 0 for what its centre sees.
     pub(super) reach: f64,
-    /// The value of the pixel (column, row) of the frame.
+    /// A tile is cut into rows where what is not linear of its edges is below this, in pixels: a compromise between
+    /// tiles and pixels to be asked.
+    pub(super) straight: f64,
+    /// The value of the pixel (column, row) of the frame; the edges given are all that are open over it, and some
+    /// more.
     pub(super) pixel: P,
 }
 
-impl<P: Fn(usize, usize) -> u8> Filler<'_, P> {
+/// Fills a frame, on all threads of the current rayon pool: row j begins at `j stride` of `pixels`.
+///
+/// # Errors
+/// [`RenderError::Buffer`] for a stride or a buffer that the frame does not fit.
+pub(super) fn fill_frame<P: Fn(usize, usize, Option<&Open>) -> u8 + Sync>(
+    filler: &Filler<'_, P>,
+    pixels: &mut [u8],
+    stride: usize,
+) -> Result<(), RenderError> {
+    let (width, height) = (filler.view.width() as usize, filler.view.height() as usize);
+    let needed = stride.saturating_mul(height - 1).saturating_add(width);
+    if stride < width || pixels.len() < needed {
+        return Err(RenderError::Buffer {
+            width,
+            height,
+            stride,
+            bytes: pixels.len(),
+        });
+    }
+    pixels[..needed]
+        .par_chunks_mut(stride * TILE)
+        .enumerate()
+        .for_each(|(index, pixels)| {
+            let first = index * TILE;
+            let height = TILE.min(height - first);
+            let mut band = Band {
+                pixels,
+                stride,
+                first,
+            };
+            band.blacken(height, width);
+            for left in (0..width).step_by(TILE) {
+                let tile = Tile {
+                    left,
+                    top: 0,
+                    width: TILE.min(width - left),
+                    height,
+                };
+                filler.fill(&mut band, tile, None);
+            }
+        });
+    Ok(())
+}
+
+/// Finds and fills the tiles that are all alike, and leaves the pixels along the disk's edges as they come: what of a
+/// frame's time is spent on finding its edges. `smooth` as [`coverage`](super::coverage) does it, or as
+/// [`mask`](super::mask) does.
+///
+/// # Errors
+/// [`RenderError::Buffer`] for a buffer that the frame does not fit.
+pub fn cull(
+    view: &View,
+    curves: &Isoradials,
+    smooth: bool,
+    pixels: &mut [u8],
+) -> Result<(), RenderError> {
+    let filler = Filler {
+        view,
+        curves,
+        reach: if smooth { 0.5 } else { 0.0 },
+        straight: if smooth {
+            super::coverage::STRAIGHT_TILE
+        } else {
+            super::mask::STRAIGHT_TILE
+        },
+        pixel: |_: usize, _: usize, _: Option<&Open>| 0,
+    };
+    fill_frame(&filler, pixels, view.width() as usize)
+}
+
+impl<P: Fn(usize, usize, Option<&Open>) -> u8> Filler<'_, P> {
     /// Fills a tile of a band, all of whose pixels are black.
-    pub(super) fn fill(&self, band: &mut Band<'_>, tile: Tile, before: Option<&Open>) {
+    fn fill(&self, band: &mut Band<'_>, tile: Tile, before: Option<&Open>) {
         let top = band.first + tile.top;
         let columns = (tile.left as f64, (tile.left + tile.width) as f64);
         let rows = (top as f64, (top + tile.height) as f64);
         let half = (0.5 * tile.width as f64, 0.5 * tile.height as f64);
         let Some(patch) = Patch::new(self.view, self.curves, columns, rows) else {
-            return self.fill_bundle(band, tile, columns, rows);
+            return self.fill_bundle(band, tile);
         };
         match self.curves.patched(&patch, half, before) {
             Err(Uniform::Miss) => {}
             Err(Uniform::Hit) => band.whiten(tile),
-            Ok(open) if is_straight(&open, half) => self.cut(band, tile, &open),
-            Ok(_) if tile.is_smallest() => self.ask(band, tile),
+            Ok(open) if is_straight(&open, half, self.straight) => self.cut(band, tile, &open),
+            Ok(open) if tile.is_smallest() => self.ask(band, tile, Some(&open)),
             Ok(open) => self.split(band, tile, Some(&open)),
         }
     }
 
     /// Fills a tile whose rays are in both quarter turns, or all about the hole's direction.
-    fn fill_bundle(&self, band: &mut Band<'_>, tile: Tile, columns: (f64, f64), rows: (f64, f64)) {
-        let bundle = Bundle::new(self.view, columns, rows);
+    fn fill_bundle(&self, band: &mut Band<'_>, tile: Tile) {
+        // With half a pixel more on each side, where pixels look to either side of their centres: what is on one side
+        // of an edge there is so too for lines that take the edge's place.
+        let (left, top) = (
+            tile.left as f64 - self.reach,
+            (band.first + tile.top) as f64 - self.reach,
+        );
+        let (wide, high) = (
+            tile.width as f64 + 2.0 * self.reach,
+            tile.height as f64 + 2.0 * self.reach,
+        );
+        let bundle = Bundle::new(self.view, (left, left + wide), (top, top + high));
         match bundle.map_or(Verdict::Mixed, |bundle| self.curves.verdict(&bundle)) {
             Verdict::Miss => {}
             Verdict::Hit => band.whiten(tile),
-            Verdict::Mixed if tile.is_smallest() => self.ask(band, tile),
+            Verdict::Mixed if tile.is_smallest() => self.ask(band, tile, None),
             Verdict::Mixed => self.split(band, tile, None),
         }
     }
@@ -121,7 +205,7 @@ impl<P: Fn(usize, usize) -> u8> Filler<'_, P> {
             for &(from, to) in &possible[..open.bands().len()] {
                 for (i, pixel) in row.iter_mut().enumerate().take(to).skip(from) {
                     if *pixel != WHITE {
-                        *pixel = (self.pixel)(tile.left + i, y);
+                        *pixel = (self.pixel)(tile.left + i, y, Some(open));
                     }
                 }
             }
@@ -129,24 +213,24 @@ impl<P: Fn(usize, usize) -> u8> Filler<'_, P> {
     }
 
     /// Asks every pixel of a tile.
-    fn ask(&self, band: &mut Band<'_>, tile: Tile) {
+    fn ask(&self, band: &mut Band<'_>, tile: Tile, open: Option<&Open>) {
         for j in 0..tile.height {
             let y = band.first + tile.top + j;
             let row = band.row(tile.top + j, tile.left, tile.width);
             for (i, pixel) in row.iter_mut().enumerate() {
-                *pixel = (self.pixel)(tile.left + i, y);
+                *pixel = (self.pixel)(tile.left + i, y, open);
             }
         }
     }
 }
 
-/// Whether every open edge is nearly a straight line over its tile.
-fn is_straight(open: &Open, half: (f64, f64)) -> bool {
+/// Whether every open edge is a straight line over its tile, to so many pixels.
+pub(super) fn is_straight(open: &Open, half: (f64, f64), pixels: f64) -> bool {
     let straight = |line: &Line| {
         let bend = line.per_column.radius * half.0 + line.per_row.radius * half.1;
         // The gradient's larger part is its length, but for a factor of √2.
         let gradient = line.per_column.middle.abs().max(line.per_row.middle.abs());
-        bend <= STRAIGHT * gradient
+        bend <= pixels * gradient
     };
     open.bands()
         .iter()
@@ -167,7 +251,7 @@ impl Band<'_> {
     }
 
     /// Makes the first `height` rows black.
-    pub(super) fn blacken(&mut self, height: usize, width: usize) {
+    fn blacken(&mut self, height: usize, width: usize) {
         if self.stride == width {
             self.pixels.fill(0);
         } else {

@@ -133,11 +133,6 @@ pub enum SceneError {
         /// What was asked for, in pixels.
         tolerance: f64,
     },
-    /// The scene asks for antialiasing.
-    #[error(
-        "image.antialias = true: antialiasing is not available in this version yet, set antialias = false or leave it out"
-    )]
-    Antialias,
     /// Neither a built-in scene nor a file has that name.
     #[error(
         "{} is neither a built-in scene ({}) nor a file that exists: `darkness scene` describes the built-in ones, `darkness scene NAME` prints one to start from",

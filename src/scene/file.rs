@@ -45,7 +45,7 @@ pub(super) struct DiskTable {
 pub(super) struct ImageTable {
     pub(super) width: i64,
     pub(super) height: i64,
-    #[serde(default)]
+    #[serde(default = "yes")]
     pub(super) antialias: bool,
     #[serde(default = "default_tolerance")]
     pub(super) tolerance: f64,
@@ -53,6 +53,10 @@ pub(super) struct ImageTable {
 
 fn hole() -> [f64; 3] {
     [0.0; 3]
+}
+
+fn yes() -> bool {
+    true
 }
 
 fn default_tolerance() -> f64 {
@@ -103,7 +107,7 @@ impl From<&Scene> for SceneFile {
             image: ImageTable {
                 width: i64::from(scene.image.width),
                 height: i64::from(scene.image.height),
-                antialias: false,
+                antialias: scene.antialias,
                 tolerance: scene.tolerance,
             },
         }
@@ -153,7 +157,7 @@ mod tests {
         assert_eq!(file.camera.focus, [0.0; 3]);
         assert_eq!(file.camera.up, [0.0, 0.0, 1.0]);
         assert_eq!(file.disk.normal, [0.0, 0.0, 1.0]);
-        assert!(!file.image.antialias);
+        assert!(file.image.antialias);
         assert_eq!(file.image.tolerance, 0.001);
     }
 

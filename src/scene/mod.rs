@@ -19,7 +19,7 @@
 //! [image]
 //! width  = 1920                      # required
 //! height = 1080                      # required
-//! antialias = false                  # default
+//! antialias = true                   # default; false: each pixel is what its centre sees, 255 or 0
 //! tolerance = 0.001                  # default; what an edge may be off by, in pixels; 0 < tolerance ≤ 1
 //! ```
 //!
@@ -103,6 +103,7 @@ pub struct Scene {
     camera: Camera,
     disk: Disk,
     image: ImageSize,
+    antialias: bool,
     tolerance: f64,
 }
 
@@ -166,6 +167,12 @@ impl Scene {
         Ok(Self { tolerance, ..*self })
     }
 
+    /// The same scene with smooth edges or with hard ones.
+    #[must_use]
+    pub fn with_antialias(&self, antialias: bool) -> Self {
+        Self { antialias, ..*self }
+    }
+
     /// The scene's TOML form with every key written out; [`Scene::from_toml`] reads the same scene back.
     pub fn to_toml(&self) -> String {
         file::SceneFile::from(self).to_string()
@@ -184,6 +191,11 @@ impl Scene {
     /// The picture's size.
     pub fn image(&self) -> ImageSize {
         self.image
+    }
+
+    /// Whether a pixel is the share of its square that the disk covers, and not what its centre sees.
+    pub fn antialias(&self) -> bool {
+        self.antialias
     }
 
     /// What an edge may be off by, in pixels.

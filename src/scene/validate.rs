@@ -54,9 +54,7 @@ pub(super) fn scene(file: SceneFile) -> Result<Scene, SceneError> {
     } = file;
     let camera = self::camera(&camera)?;
     let disk = self::disk(&disk)?;
-    if image.antialias {
-        return Err(SceneError::Antialias);
-    }
+    let antialias = image.antialias;
     let tolerance = tolerance(image.tolerance)?;
     let image = image_size(image.width, image.height)?;
 
@@ -75,6 +73,7 @@ pub(super) fn scene(file: SceneFile) -> Result<Scene, SceneError> {
         camera,
         disk,
         image,
+        antialias,
         tolerance,
     })
 }
@@ -377,16 +376,5 @@ mod tests {
         for tolerance in ["1.0", "1", "1e-12", "5e-324"] {
             assert!(changed(&[("tolerance", tolerance)]).is_ok(), "{tolerance}");
         }
-    }
-
-    #[test]
-    fn antialiasing_is_not_there_yet() {
-        refused(
-            &[("antialias", "true")],
-            &[
-                "image.antialias",
-                "antialiasing is not available in this version yet",
-            ],
-        );
     }
 }

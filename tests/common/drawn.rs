@@ -46,7 +46,8 @@ impl Program {
             self.folder.path().join("scene.toml"),
             self.folder.path().join("scene.png"),
         );
-        fs::write(&file, scene.to_toml()).unwrap();
+        // What a pixel's centre sees can be compared with its ray.
+        fs::write(&file, scene.with_antialias(false).to_toml()).unwrap();
         let said = self.run(&["render", "scene.toml"]);
         let pixels = image::open(&picture).unwrap().to_luma8().into_raw();
         Drawn {
