@@ -39,17 +39,22 @@ impl Piece {
         for cell in 0..count - 1 {
             let x = (before, finer.x(cell + 1));
             before = x.1;
-            let (outer, inner) = (
-                cell_bounds(&piece.outer, cell),
-                cell_bounds(&piece.inner, cell),
+            let (mut lowest, mut highest) = (
+                cell_bounds(&piece.outer, cell).0,
+                cell_bounds(&piece.inner, cell).1,
             );
-            let (outer, inner) = if piece.pole {
-                (over(outer, x), over(inner, x))
-            } else {
-                (outer, inner)
-            };
-            piece.lowest = piece.lowest.min(outer.0);
-            piece.highest = piece.highest.max(inner.1);
+            if piece.pole {
+                // Only what goes beyond the cells before needs its narrower bounds.
+                (lowest, highest) = (over((lowest, lowest), x).0, over((highest, highest), x).1);
+                if lowest < piece.lowest {
+                    lowest = piece.bounds(Edge::Outer, x).0;
+                }
+                if highest > piece.highest {
+                    highest = piece.bounds(Edge::Inner, x).1;
+                }
+            }
+            piece.lowest = piece.lowest.min(lowest);
+            piece.highest = piece.highest.max(highest);
         }
         piece
     }
