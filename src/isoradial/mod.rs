@@ -46,7 +46,7 @@ mod turns;
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use crate::orbit::path::SweptAngles;
+use crate::orbit::path::{Between, SweptAngles};
 use nodes::{Coarsest, LOOKED_AT, Nodes, SOLVED, coarsest};
 pub use open::{Open, OpenBand, Uniform};
 pub use patch::{Interval, Line, Patch, Side};
@@ -54,7 +54,7 @@ use piece::{Piece, thickness};
 pub use range::{Bundle, Verdict};
 use sight::Shown;
 pub use sight::Sight;
-use solve::{Closeness, Found, Target};
+use solve::{Closeness, Found, Target, target};
 use turns::Turns;
 
 /// The images' orders beyond this one are e^{−12π} as thick as the first: below the rounding of the ray itself.
@@ -84,14 +84,6 @@ impl EdgeError {
     /// All of it.
     pub fn total(&self) -> f64 {
         self.interpolation + self.angles + self.rounding
-    }
-
-    fn max(self, other: Self) -> Self {
-        Self {
-            interpolation: self.interpolation.max(other.interpolation),
-            angles: self.angles.max(other.angles),
-            rounding: self.rounding.max(other.rounding),
-        }
     }
 }
 
@@ -157,7 +149,7 @@ impl Isoradials {
             psi: SOLVED * allowed / shown.most_per_radian(),
             phi: 0.0,
         };
-        let mut hand = Hand::new(sight, &shown, angles);
+        let mut hand = hand(sight, &shown, angles);
         for number in 0..MOST_ORDERS {
             let outline = hand.outline(number, closeness);
             let thickness = outline.thickness(&shown);
@@ -169,12 +161,12 @@ impl Isoradials {
                 break;
             }
             let drawn = hand.refine(outline, allowed);
-            curves.error = curves.error.max(hand.error(&drawn));
+            curves.error = hand.error(curves.error, &drawn);
             let pieces = drawn.pieces(number, sight);
             if pieces.iter().any(Option::is_some) {
                 curves.orders.push(Order {
                     number,
-                    thickness: drawn.thickness(&shown),
+                    thickness,
                     nodes: pieces.iter().flatten().map(Piece::nodes).sum(),
                 });
             }
@@ -252,7 +244,7 @@ impl Isoradials {
 /// The ray that reaches an edge in a given angle: its `κ − κ_c`, as right as the method's angles are. `angle` is
 /// above 0; it is the `φ₁ + kπ` of [`Isoradials::height`].
 pub fn height_at(sight: &Sight, edge: Edge, angle: f64, angles: &impl SweptAngles) -> f64 {
-    let target = Target::new(sight, edge, angles);
+    let target = target(sight, edge, angles);
     target.bracket(angle, target.first_guess(angle), 1e-13).h
 }
 
@@ -267,7 +259,7 @@ pub fn sensitivity(sight: &Sight, angles: &impl SweptAngles) -> f64 {
         psi: 0.0,
         phi: LOOKED_AT,
     };
-    let mut hand = Hand::new(sight, &shown, angles);
+    let mut hand = hand(sight, &shown, angles);
     let mut most: f64 = 0.0;
     for number in 0..MOST_ORDERS {
         let outline = hand.outline(number, closeness);
@@ -295,28 +287,34 @@ fn place(n: f64, d: f64) -> f64 {
 }
 
 /// What draws the curves of one order after the other.
-struct Hand<'a, A> {
+struct Hand<'a, B> {
     shown: &'a Shown,
-    angles: &'a A,
+    /// Of the method's angles.
+    angle_error: f64,
     /// Inner and outer edge.
-    targets: [Target<'a, A>; 2],
+    targets: [Target<B>; 2],
     /// The nodes of each quarter turn that the picture shows.
     turns: [Option<Turns>; 2],
     /// The order before: the coarsest nodes of inner and outer edge of each quarter turn.
     before: [Option<[Coarsest; 2]>; 2],
 }
 
-impl<'a, A: SweptAngles> Hand<'a, A> {
-    fn new(sight: &Sight, shown: &'a Shown, angles: &'a A) -> Self {
-        Self {
-            shown,
-            angles,
-            targets: [Edge::Inner, Edge::Outer].map(|edge| Target::new(sight, edge, angles)),
-            turns: sight.window.quarters().map(|x| x.map(Turns::new)),
-            before: [None, None],
-        }
+/// Nothing is drawn yet.
+fn hand<'a, A: SweptAngles>(
+    sight: &Sight,
+    shown: &'a Shown,
+    angles: &'a A,
+) -> Hand<'a, impl Between> {
+    Hand {
+        shown,
+        angle_error: angles.error(),
+        targets: [Edge::Inner, Edge::Outer].map(|edge| target(sight, edge, angles)),
+        turns: sight.window.quarters().map(|x| x.map(Turns::new)),
+        before: [None, None],
     }
+}
 
+impl<B: Between> Hand<'_, B> {
     /// The curves of order `number` on the coarsest nodes, right to `closeness`. The orders come one after the other.
     fn outline(&mut self, number: u32, closeness: Closeness) -> Drawn {
         let mut ends: Option<[Found; 2]> = None;
@@ -338,7 +336,7 @@ impl<'a, A: SweptAngles> Hand<'a, A> {
 
     /// The same curves on as many nodes as it takes for an error of `allowed` pixels.
     fn refine(&mut self, outline: Drawn, allowed: f64) -> Drawn {
-        let angle_error = self.angles.error();
+        let angle_error = self.angle_error;
         let mut turns = self.turns.iter_mut();
         Drawn(outline.0.map(|pair| {
             let turns = turns.next()?.as_mut()?;
@@ -359,19 +357,19 @@ impl<'a, A: SweptAngles> Hand<'a, A> {
         for (pair, turns) in drawn.0.iter().zip(&mut self.turns) {
             if let (Some(pair), Some(turns)) = (pair, turns) {
                 for nodes in pair {
-                    most = most.max(nodes.sensitivity(turns, self.shown));
+                    most = nodes.sensitivity(most, turns, self.shown);
                 }
             }
         }
         most
     }
 
-    fn error(&mut self, drawn: &Drawn) -> EdgeError {
-        let mut error = EdgeError::default();
+    /// What these curves, or those before, may be off by.
+    fn error(&mut self, mut error: EdgeError, drawn: &Drawn) -> EdgeError {
         for (pair, turns) in drawn.0.iter().zip(&mut self.turns) {
             if let (Some(pair), Some(turns)) = (pair, turns) {
                 for nodes in pair {
-                    error = error.max(nodes.error(turns, self.shown, self.angles.error()));
+                    error = nodes.error(error, turns, self.shown, self.angle_error);
                 }
             }
         }

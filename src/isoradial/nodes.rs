@@ -19,7 +19,7 @@ use super::sight::Shown;
 use super::solve::{Closeness, Found, Guess, Target};
 use super::turns::Turns;
 use super::{EdgeError, Quarter};
-use crate::orbit::path::{Branch, SweptAngles};
+use crate::orbit::path::{Between, Branch};
 use crate::table::spline::{self, Axis, coefficients, on_half_cells};
 
 /// Fewest cells of a piece: a quarter turn in eight.
@@ -27,6 +27,9 @@ const FEWEST_CELLS: usize = 8;
 
 /// What the error may be between the places it is looked at, over the largest that is seen there.
 const BETWEEN: f64 = 1.25;
+
+/// Errors below this share of what they may be are not told from it.
+const FLOOR: f64 = 1.0 / 16.0;
 
 /// Cells from which on a doubling brings down the error of a curve that is resolved by far more than a half.
 const SETTLED_CELLS: usize = 128;
@@ -61,8 +64,8 @@ pub(super) type Coarsest = [Found; FEWEST_CELLS + 1];
 ///
 /// The guesses: the next node lies where the cubic through the last two and their slopes goes on, or, from the second
 /// order on, where the one before it was, times as much as at the last node.
-pub(super) fn coarsest<A: SweptAngles>(
-    target: &Target<A>,
+pub(super) fn coarsest<B: Between>(
+    target: &Target<B>,
     quarter: Quarter,
     turns: &mut Turns,
     before: Option<&Coarsest>,
@@ -131,8 +134,8 @@ pub(super) fn coarsest<A: SweptAngles>(
 }
 
 /// A guess of node `i`: of what is kept, the cubic through the two nodes before and their slopes.
-fn extrapolated<A: SweptAngles>(
-    target: &Target<A>,
+fn extrapolated<B: Between>(
+    target: &Target<B>,
     quarter: Quarter,
     i: usize,
     found: &Coarsest,
@@ -171,10 +174,7 @@ fn extrapolated<A: SweptAngles>(
 
 impl Nodes {
     /// The nodes of `found`.
-    pub(super) fn new<A>(target: &Target<A>, quarter: Quarter, found: &Coarsest) -> Self
-    where
-        A: SweptAngles,
-    {
+    pub(super) fn new<B: Between>(target: &Target<B>, quarter: Quarter, found: &Coarsest) -> Self {
         let value = |(i, found): (usize, &Found)| {
             let x = quarter.x_at(i as f64 / FEWEST_CELLS as f64);
             if quarter.pole && x == 0.0 {
@@ -195,9 +195,9 @@ impl Nodes {
 
     /// The curve of `target`, its nodes doubled until it is right to `allowed` pixels in every cell that the picture
     /// shows, or as right as the angles are.
-    pub(super) fn refine<A: SweptAngles>(
+    pub(super) fn refine<B: Between>(
         self,
-        target: &Target<A>,
+        target: &Target<B>,
         turns: &mut Turns,
         shown: &Shown,
         allowed: f64,
@@ -211,8 +211,10 @@ impl Nodes {
             phi: 0.0,
         };
         let mut branch = Branch::Direct;
+        let mut noise = None;
         loop {
-            let (finer, error) = nodes.refined(target, turns, shown, closeness, &mut branch);
+            let (finer, error) =
+                nodes.refined(target, turns, shown, closeness, FLOOR * allowed, &mut branch);
             // See there.
             let error = error + 4.0 * solved;
             let settled = nodes.cells() >= SETTLED_CELLS
@@ -222,7 +224,11 @@ impl Nodes {
                 || settled
                 || finer.cells() >= MOST_CELLS
                 // Nodes and middles are off by as much as the angles and the arithmetic, which no node mends.
-                || error <= 2.0 * finer.noise(turns, shown, angle_error);
+                || error <= 2.0 * *noise.get_or_insert_with(|| {
+                    let none = EdgeError::default();
+                    let error = finer.error(none, turns, shown, angle_error);
+                    error.angles + error.rounding
+                });
             if done {
                 nodes.interpolation = error;
                 return nodes;
@@ -257,6 +263,11 @@ impl Nodes {
         }
     }
 
+    /// Of all nodes.
+    pub(super) fn heights(&self) -> impl Iterator<Item = f64> {
+        (0..self.count()).map(|i| self.height(i))
+    }
+
     pub(super) fn axis(&self) -> Axis {
         Axis {
             start: self.quarter.x.0,
@@ -274,37 +285,43 @@ impl Nodes {
         spline
     }
 
-    /// What the curve may be off by where the picture shows it, in pixels, from angles with an error of
-    /// `angle_error`.
-    pub(super) fn error(&self, turns: &mut Turns, shown: &Shown, angle_error: f64) -> EdgeError {
+    /// What the curve, or those before it, may be off by where the picture shows it, in pixels, from angles with an
+    /// error of `angle_error`.
+    pub(super) fn error(
+        &self,
+        before: EdgeError,
+        turns: &mut Turns,
+        shown: &Shown,
+        angle_error: f64,
+    ) -> EdgeError {
+        let most = (before.angles / angle_error).max(0.0);
         EdgeError {
-            interpolation: self.interpolation,
-            angles: self.sensitivity(turns, shown) * angle_error,
-            rounding: self.rounding(shown),
+            interpolation: self.interpolation.max(before.interpolation),
+            angles: self.sensitivity(most, turns, shown) * angle_error,
+            rounding: self.rounding(before.rounding, shown),
         }
     }
 
-    fn noise(&self, turns: &mut Turns, shown: &Shown, angle_error: f64) -> f64 {
-        self.sensitivity(turns, shown) * angle_error + self.rounding(shown)
-    }
-
-    /// `|∂ψ/∂φ|` where the picture shows the curve, at most, in pixels per radian of φ: from node to node.
-    pub(super) fn sensitivity(&self, turns: &mut Turns, shown: &Shown) -> f64 {
+    /// `|∂ψ/∂φ|` where the picture shows the curve, in pixels per radian of φ, from node to node, if more than `most`.
+    pub(super) fn sensitivity(&self, most: f64, turns: &mut Turns, shown: &Shown) -> f64 {
         let turned = turns.nodes(self.cells());
         let mut before = self.height(0);
-        (1..self.count()).fold(0.0, |most: f64, i| {
+        (1..self.count()).fold(most, |most, i| {
             let (ends, turn) = ((before, self.height(i)), turned[i] - turned[i - 1]);
             before = ends.1;
-            shown.farthest(most * turn, ends.0, ends.1, ends) / turn
+            let least = most * turn;
+            let moved = shown.farthest(least, ends.0, ends.1, ends);
+            if moved > least { moved / turn } else { most }
         })
     }
 
-    /// What the rounding of a pixel's own `z/s` and of `κ_c` amounts to, some ε of each, `dψ = dκ/(1 + κ²)`.
-    fn rounding(&self, shown: &Shown) -> f64 {
+    /// What the rounding of a pixel's own `z/s` and of `κ_c` amounts to, some ε of each, `dψ = dκ/(1 + κ²)`, if more
+    /// than `most`.
+    fn rounding(&self, most: f64, shown: &Shown) -> f64 {
         const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
         let critical = shown.critical;
         let mut before = self.height(0);
-        (1..self.count()).fold(0.0, |most: f64, i| {
+        (1..self.count()).fold(most, |most, i| {
             let ends = (before, self.height(i));
             before = ends.1;
             let kappa = critical + ends.0.min(ends.1);
@@ -324,20 +341,22 @@ impl Nodes {
         })
     }
 
-    /// Twice the cells, and how far the present curve was off on the new nodes and halfway to them, in pixels.
-    fn refined<A: SweptAngles>(
+    /// Twice the cells, and how far the present curve was off on the new nodes and halfway to them, in pixels, if more
+    /// than `floor`.
+    fn refined<B: Between>(
         &self,
-        target: &Target<A>,
+        target: &Target<B>,
         turns: &mut Turns,
         shown: &Shown,
         closeness: Closeness,
+        floor: f64,
         branch: &mut Branch,
     ) -> (Self, f64) {
         let (quarter, cells) = (self.quarter, self.cells());
         let per_unit = self.axis().scale();
         let turned = turns.nodes(2 * cells);
         let mut values = Vec::with_capacity(2 * cells + 1);
-        let mut error: f64 = 0.0;
+        let mut error = floor;
         for i in 0..cells {
             values.push(self.values[i]);
             let x = quarter.x_at((i as f64 + 0.5) / cells as f64);

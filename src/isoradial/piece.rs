@@ -32,8 +32,8 @@ impl Piece {
             pole: finer.quarter.pole,
             inner: inner.spline(count),
             outer: outer.spline(count),
-            lowest: f64::INFINITY,
-            highest: f64::NEG_INFINITY,
+            lowest: outer.heights().fold(f64::INFINITY, f64::min),
+            highest: inner.heights().fold(f64::NEG_INFINITY, f64::max),
         };
         let mut before = finer.x(0);
         for cell in 0..count - 1 {
@@ -44,7 +44,7 @@ impl Piece {
                 cell_bounds(&piece.inner, cell).1,
             );
             if piece.pole {
-                // Only what goes beyond the cells before needs its narrower bounds.
+                // Only what goes beyond the nodes needs its narrower bounds.
                 (lowest, highest) = (over((lowest, lowest), x).0, over((highest, highest), x).1);
                 if lowest < piece.lowest {
                     lowest = piece.bounds(Edge::Outer, x).0;

@@ -9,19 +9,23 @@
 
 use super::{Edge, Sight};
 use crate::orbit::Fate;
-use crate::orbit::invariants::Orbit;
-use crate::orbit::path::{Branch, Crossings, SweptAngles, ahead, turns};
+use crate::orbit::invariants::{Orbit, Way};
+use crate::orbit::path::{Between, Branch, Crossings, SweptAngles, ahead, turns};
 
 /// From where, to which radius.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Target<'a, A> {
-    pub(super) u0: f64,
-    pub(super) slope_scale: f64,
-    /// κ of the critical ray.
+#[derive(Debug, Clone)]
+pub(super) struct Target<B> {
+    u0: f64,
+    slope_scale: f64,
+    /// κ of the critical ray,
     pub(super) critical: f64,
+    /// and its slope.
+    critical_slope: f64,
     /// Inverse radius to be met.
-    pub(super) u_disk: f64,
-    angles: &'a A,
+    u_disk: f64,
+    /// There from `u0`.
+    way: Way,
+    angles: B,
 }
 
 /// Where a curve may be, and how steep.
@@ -51,21 +55,28 @@ pub(super) struct Closeness {
     pub(super) phi: f64,
 }
 
-impl<'a, A: SweptAngles> Target<'a, A> {
-    /// An edge of the disk, seen by the camera of `sight`.
-    pub(super) fn new(sight: &Sight, edge: Edge, angles: &'a A) -> Self {
-        Self {
-            u0: sight.u0,
-            slope_scale: sight.slope_scale,
-            critical: sight.critical(),
-            u_disk: match edge {
-                Edge::Inner => sight.u_inner,
-                Edge::Outer => sight.u_outer,
-            },
-            angles,
-        }
+/// An edge of the disk, seen by the camera of `sight`.
+pub(super) fn target<A: SweptAngles>(
+    sight: &Sight,
+    edge: Edge,
+    angles: &A,
+) -> Target<impl Between> {
+    let u_disk = match edge {
+        Edge::Inner => sight.u_inner,
+        Edge::Outer => sight.u_outer,
+    };
+    Target {
+        u0: sight.u0,
+        slope_scale: sight.slope_scale,
+        critical: sight.critical(),
+        critical_slope: sight.slope_scale * sight.critical(),
+        u_disk,
+        way: Way::new(sight.u0, u_disk),
+        angles: angles.between(sight.u0, u_disk),
     }
+}
 
+impl<B: Between> Target<B> {
     /// A guess of h for the ray that meets the radius at `angle`: flat space's ray in the first half turn, where `u =
     /// u0 cos φ + w sin φ`, and the rings' decay towards the critical ray beyond.
     pub(super) fn first_guess(&self, angle: f64) -> f64 {
@@ -78,14 +89,13 @@ impl<'a, A: SweptAngles> Target<'a, A> {
     }
 
     /// The orbit with `κ = κ_c + h`. `Δ = (w − w_c)(w + w_c)` from h itself: exact however close to critical.
-    #[inline]
+    #[inline(always)]
     fn orbit(&self, h: f64) -> Orbit {
         let excess = self.slope_scale * h;
-        let critical = self.slope_scale * self.critical;
         Orbit::with_delta(
             self.u0,
-            critical + excess,
-            excess * (2.0 * critical + excess),
+            self.critical_slope + excess,
+            excess * (2.0 * self.critical_slope + excess),
         )
     }
 
@@ -94,7 +104,7 @@ impl<'a, A: SweptAngles> Target<'a, A> {
     /// missing. Infinite where the ray never meets the radius.
     fn residual(&self, h: f64, angle: f64) -> f64 {
         let orbit = self.orbit(h);
-        let Crossings { inbound, outbound } = self.angles.crossings(&orbit, self.u_disk);
+        let Crossings { inbound, outbound } = self.angles.crossings(&orbit, self.way.end(&orbit));
         match (inbound, outbound) {
             (Some(enter), Some(leave)) => (angle - enter).min(leave - angle),
             (Some(enter), None) => angle - enter,
@@ -107,10 +117,10 @@ impl<'a, A: SweptAngles> Target<'a, A> {
 
     /// The angle at which the ray of `h` meets the radius: where it does so twice, the way that `branch` says, which is
     /// set to the way that was taken.
-    #[inline]
+    #[inline(always)]
     fn swept(&self, h: f64, branch: &mut Branch) -> Option<f64> {
         let orbit = self.orbit(h);
-        let point = orbit.point_at(self.u_disk)?;
+        let point = self.way.end(&orbit)?;
         let taken = match (ahead(&orbit, self.u_disk), turns(&orbit)) {
             (true, true) => *branch,
             (true, false) => Branch::Direct,
@@ -119,8 +129,8 @@ impl<'a, A: SweptAngles> Target<'a, A> {
         };
         *branch = taken;
         Some(match taken {
-            Branch::Direct => self.angles.direct(&orbit, orbit.start, point),
-            Branch::Around => self.angles.around(&orbit, orbit.start, point),
+            Branch::Direct => self.angles.direct(&orbit, point),
+            Branch::Around => self.angles.around(&orbit, point),
         })
     }
 

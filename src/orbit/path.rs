@@ -29,14 +29,45 @@ pub trait SweptAngles: Sync {
 
     /// The angles at which the orbit crosses inverse radius `u`: inbound, outbound. The start is no crossing.
     fn crossings(&self, orbit: &Orbit, u: f64) -> Crossings {
-        let start = orbit.start;
-        let Some(point) = orbit.point_at(u) else {
+        Anywhere(self).crossings(orbit, orbit.point_at(u))
+    }
+
+    /// The same angles, for one orbit after the other, of orbits that start at inverse radius `from`, to `to`: where
+    /// a method knows what depends on the two alone, it is found once.
+    fn between(&self, from: f64, to: f64) -> impl Between {
+        let _ = (from, to);
+        Anywhere(self)
+    }
+
+    /// The first of [`Self::crossings`].
+    #[inline]
+    fn first_crossing_at(&self, orbit: &Orbit, u: f64) -> Option<f64> {
+        let point = orbit.point_at(u)?;
+        if ahead(orbit, u) {
+            Some(self.direct(orbit, orbit.start, point))
+        } else {
+            turns(orbit).then(|| self.around(orbit, orbit.start, point))
+        }
+    }
+}
+
+/// A method's swept angles from the start of orbits, which is at one radius, to their points at another.
+pub trait Between {
+    /// [`SweptAngles::direct`] from the start.
+    fn direct(&self, orbit: &Orbit, to: Point) -> f64;
+
+    /// [`SweptAngles::around`] from the start.
+    fn around(&self, orbit: &Orbit, to: Point) -> f64;
+
+    /// The angles at which the orbit is at a point of its own, if it has it, inbound and outbound.
+    fn crossings(&self, orbit: &Orbit, point: Option<Point>) -> Crossings {
+        let Some(point) = point else {
             return Crossings::default();
         };
-        let first = ahead(orbit, u).then(|| self.direct(orbit, start, point));
+        let first = ahead(orbit, point.u).then(|| self.direct(orbit, point));
         // What lies on the way to the turning point is crossed again after it, and so is all that lies behind the
         // start.
-        let second = turns(orbit).then(|| self.around(orbit, start, point));
+        let second = turns(orbit).then(|| self.around(orbit, point));
         if orbit.inward {
             Crossings {
                 inbound: first,
@@ -49,16 +80,20 @@ pub trait SweptAngles: Sync {
             }
         }
     }
+}
 
-    /// The first of [`Self::crossings`].
+/// Between any two radii, of a method that knows nothing of them beforehand.
+struct Anywhere<'a, A: ?Sized>(&'a A);
+
+impl<A: SweptAngles + ?Sized> Between for Anywhere<'_, A> {
     #[inline]
-    fn first_crossing_at(&self, orbit: &Orbit, u: f64) -> Option<f64> {
-        let point = orbit.point_at(u)?;
-        if ahead(orbit, u) {
-            Some(self.direct(orbit, orbit.start, point))
-        } else {
-            turns(orbit).then(|| self.around(orbit, orbit.start, point))
-        }
+    fn direct(&self, orbit: &Orbit, to: Point) -> f64 {
+        self.0.direct(orbit, orbit.start, to)
+    }
+
+    #[inline]
+    fn around(&self, orbit: &Orbit, to: Point) -> f64 {
+        self.0.around(orbit, orbit.start, to)
     }
 }
 
