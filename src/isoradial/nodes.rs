@@ -105,15 +105,18 @@ pub(super) fn coarsest<B: Between>(
             (0, None, None) => None,
             (1.., Some(before), _) => {
                 let ratio = |i: usize| found[i].h / before[i].h;
-                let ratio = if i == 1 {
-                    ratio(0)
+                let rise = if i == 1 {
+                    0.0
                 } else {
-                    2.0 * ratio(i - 1) - ratio(i - 2)
+                    (ratio(i - 1) - ratio(i - 2)) / (turned[i - 1] - turned[i - 2])
                 };
+                let ratio = ratio(i - 1) + rise * cell;
+                // A line through two nodes that is off at the next by some amount is off there in its slope by 3/2 of
+                // that a cell, a constant by 1; and h bends by h′ for each radian.
                 Some(Guess {
                     h: ratio * before[i].h,
-                    slope: ratio * before[i].slope,
-                    blur: f64::INFINITY,
+                    slope: ratio * before[i].slope + rise * before[i].h,
+                    blur: 2.0 / cell + 1.0,
                 })
             }
             (1.., None, _) => Some(extrapolated(target, quarter, i, &found)),
@@ -213,8 +216,14 @@ impl Nodes {
         let mut branch = Branch::Direct;
         let mut noise = None;
         loop {
-            let (finer, error) =
-                nodes.refined(target, turns, shown, closeness, FLOOR * allowed, &mut branch);
+            let (finer, error) = nodes.refined(
+                target,
+                turns,
+                shown,
+                closeness,
+                FLOOR * allowed,
+                &mut branch,
+            );
             // See there.
             let error = error + 4.0 * solved;
             let settled = nodes.cells() >= SETTLED_CELLS
