@@ -245,7 +245,7 @@ impl Isoradials {
 /// above 0; it is the `φ₁ + kπ` of [`Isoradials::height`].
 pub fn height_at(sight: &Sight, edge: Edge, angle: f64, angles: &impl SweptAngles) -> f64 {
     let target = target(sight, edge, angles);
-    target.bracket(angle, target.first_guess(angle), 1e-13).h
+    target.bracket(angle, target.first_guess(angle), 1e-13).0
 }
 
 /// How far an edge moves when every angle changes: `|∂ψ/∂φ|` of the curves of `sight` at most, in pixels per radian,

@@ -52,6 +52,8 @@ pub(super) struct Nodes {
     /// The coefficients of the spline through them.
     spline: Vec<f64>,
     pub(super) quarter: Quarter,
+    /// The way that rays take to the radius at the curve's beginning.
+    branch: Branch,
     /// The largest interpolation error, in pixels.
     interpolation: f64,
 }
@@ -76,8 +78,8 @@ pub(super) fn coarsest<B: Between>(
     let mut found = [Found {
         h: f64::INFINITY,
         slope: f64::NAN,
+        branch: Branch::Direct,
     }; FEWEST_CELLS + 1];
-    let mut branch = Branch::Direct;
     for i in 0..=FEWEST_CELLS {
         let x = quarter.x_at(i as f64 / FEWEST_CELLS as f64);
         if quarter.pole && x == 0.0 {
@@ -93,6 +95,7 @@ pub(super) fn coarsest<B: Between>(
                 h: end.h,
                 slope: end.slope,
                 blur: 1.0 / cell,
+                branch: end.branch,
             }),
             (0, Some(before), None) => {
                 let ratio = libm::exp(-core::f64::consts::PI);
@@ -100,6 +103,7 @@ pub(super) fn coarsest<B: Between>(
                     h: ratio * before[0].h,
                     slope: ratio * before[0].slope,
                     blur: f64::INFINITY,
+                    branch: before[0].branch,
                 })
             }
             (0, None, None) => None,
@@ -117,6 +121,7 @@ pub(super) fn coarsest<B: Between>(
                     h: ratio * before[i].h,
                     slope: ratio * before[i].slope + rise * before[i].h,
                     blur: 2.0 / cell + 1.0,
+                    branch: found[i - 1].branch,
                 })
             }
             (1.., None, _) => Some(extrapolated(target, quarter, i, &found)),
@@ -126,12 +131,13 @@ pub(super) fn coarsest<B: Between>(
             h: target.first_guess(angle),
             slope: f64::NAN,
             blur: f64::INFINITY,
+            branch: Branch::Direct,
         });
         let closeness = Closeness {
             phi: closeness.phi * cell,
             ..closeness
         };
-        found[i] = target.follow(angle, guess, closeness, &mut branch);
+        found[i] = target.follow(angle, guess, closeness);
     }
     found
 }
@@ -172,6 +178,7 @@ fn extrapolated<B: Between>(
         h,
         slope,
         blur: f64::INFINITY,
+        branch: found[i - 1].branch,
     }
 }
 
@@ -192,6 +199,7 @@ impl Nodes {
             spline: Vec::new(),
             values,
             quarter,
+            branch: found[1].branch,
             interpolation: f64::INFINITY,
         }
     }
@@ -213,17 +221,9 @@ impl Nodes {
             psi: solved / shown.most_per_radian(),
             phi: 0.0,
         };
-        let mut branch = Branch::Direct;
         let mut noise = None;
         loop {
-            let (finer, error) = nodes.refined(
-                target,
-                turns,
-                shown,
-                closeness,
-                FLOOR * allowed,
-                &mut branch,
-            );
+            let (finer, error) = nodes.refined(target, turns, shown, closeness, FLOOR * allowed);
             // See there.
             let error = error + 4.0 * solved;
             let settled = nodes.cells() >= SETTLED_CELLS
@@ -359,12 +359,12 @@ impl Nodes {
         shown: &Shown,
         closeness: Closeness,
         floor: f64,
-        branch: &mut Branch,
     ) -> (Self, f64) {
         let (quarter, cells) = (self.quarter, self.cells());
         let per_unit = self.axis().scale();
         let turned = turns.nodes(2 * cells);
         let mut values = Vec::with_capacity(2 * cells + 1);
+        let mut branch = self.branch;
         let mut error = floor;
         for i in 0..cells {
             values.push(self.values[i]);
@@ -376,10 +376,15 @@ impl Nodes {
             // An error that vanishes at the nodes rises and falls within half a cell; the curve bends as the spline
             // does.
             let blur = 4.0 / (turned[k + 1] - turned[k - 1]) + 0.5 * (bend / slope).abs();
-            let guess = Guess { h, slope, blur };
-            let truth = target
-                .follow(quarter.start + turned[k], guess, closeness, branch)
-                .h;
+            let guess = Guess {
+                h,
+                slope,
+                blur,
+                branch,
+            };
+            let found = target.follow(quarter.start + turned[k], guess, closeness);
+            let truth = found.h;
+            branch = found.branch;
             values.push(truth / quarter.over_kept(x));
             error = shown.farthest(error, h, truth, (self.height(i), self.height(i + 1)));
         }

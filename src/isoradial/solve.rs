@@ -36,6 +36,8 @@ pub(super) struct Guess {
     pub(super) slope: f64,
     /// By what share of itself the slope may be wrong for each radian that the guess is off.
     pub(super) blur: f64,
+    /// The way that the neighbours take.
+    pub(super) branch: Branch,
 }
 
 /// A point of the curve.
@@ -44,6 +46,8 @@ pub(super) struct Found {
     pub(super) h: f64,
     /// dh/dφ about there; not a number where nothing is known of it.
     pub(super) slope: f64,
+    /// The way that the ray takes there.
+    pub(super) branch: Branch,
 }
 
 /// How right a point has to be: whichever is less strict.
@@ -115,23 +119,23 @@ impl<B: Between> Target<B> {
         }
     }
 
-    /// The angle at which the ray of `h` meets the radius: where it does so twice, the way that `branch` says, which is
-    /// set to the way that was taken.
+    /// The angle at which the ray of `h` meets the radius, and the way that it takes there: `branch`, where it does
+    /// so twice.
     #[inline(always)]
-    fn swept(&self, h: f64, branch: &mut Branch) -> Option<f64> {
+    fn swept(&self, h: f64, branch: Branch) -> Option<(f64, Branch)> {
         let orbit = self.orbit(h);
         let point = self.way.end(&orbit)?;
         let taken = match (ahead(&orbit, self.u_disk), turns(&orbit)) {
-            (true, true) => *branch,
+            (true, true) => branch,
             (true, false) => Branch::Direct,
             (false, true) => Branch::Around,
             (false, false) => return None,
         };
-        *branch = taken;
-        Some(match taken {
+        let swept = match taken {
             Branch::Direct => self.angles.direct(&orbit, point),
             Branch::Around => self.angles.around(&orbit, point),
-        })
+        };
+        Some((swept, taken))
     }
 
     /// What is kept at x = 0 in the piece with the pole: φ → 0, where `w φ → u_d − u0`, and x ~ φ.
@@ -139,67 +143,65 @@ impl<B: Between> Target<B> {
         (self.u_disk - self.u0) / self.slope_scale
     }
 
-    /// The ray that meets the radius at `angle`, from a guess of it: see the [module's page](self). `branch` is the
-    /// way that the neighbours take.
-    pub(super) fn follow(
-        &self,
-        angle: f64,
-        guess: Guess,
-        closeness: Closeness,
-        branch: &mut Branch,
-    ) -> Found {
+    /// The ray that meets the radius at `angle`, from a guess of it: see the [module's page](self).
+    pub(super) fn follow(&self, angle: f64, guess: Guess, closeness: Closeness) -> Found {
+        self.converge(angle, guess, closeness)
+            .unwrap_or_else(|| self.search(angle, guess, closeness))
+    }
+
+    /// The same, where the way or the guess is a wrong one.
+    #[cold]
+    fn search(&self, angle: f64, guess: Guess, closeness: Closeness) -> Found {
         // Where both ways meet, the rays graze the radius: if it was not the one way, it may be the other now.
-        let tries = if guess.slope.is_nan() { 0 } else { 2 };
-        for _ in 0..tries {
-            if let Some(found) = self.converge(angle, guess, closeness, branch) {
-                return found;
-            }
-            *branch = branch.other();
+        let other = Guess {
+            branch: guess.branch.other(),
+            ..guess
+        };
+        if let Some(found) = self.converge(angle, other, closeness) {
+            return found;
         }
         let h = if guess.h.is_finite() {
             guess.h
         } else {
             self.first_guess(angle)
         };
-        let near = self.bracket(angle, h, 1e-4);
+        let (h, slope) = self.bracket(angle, h, 1e-4);
         // Its slope is that of the angle that is missing: h rises with what a ray sweeps on its way out, and falls with
         // what it sweeps on its way in.
-        for slope in [near.slope, -near.slope, near.slope, -near.slope] {
-            let guess = Guess {
-                h: near.h,
-                slope,
-                blur: f64::INFINITY,
-            };
-            if let Some(found) = self.converge(angle, guess, closeness, branch) {
-                return found;
+        for Guess { branch, .. } in [guess, other] {
+            for slope in [slope, -slope] {
+                let guess = Guess {
+                    h,
+                    slope,
+                    blur: f64::INFINITY,
+                    branch,
+                };
+                if let Some(found) = self.converge(angle, guess, closeness) {
+                    return found;
+                }
             }
-            *branch = branch.other();
         }
         Found {
-            h: self.bracket(angle, near.h, 1e-13).h,
+            h: self.bracket(angle, h, 1e-13).0,
             slope: f64::NAN,
+            branch: guess.branch,
         }
     }
 
     /// Newton's step with the guess's slope, and secant steps after it; none where they do not settle.
     #[inline]
-    fn converge(
-        &self,
-        angle: f64,
-        guess: Guess,
-        closeness: Closeness,
-        branch: &mut Branch,
-    ) -> Option<Found> {
+    fn converge(&self, angle: f64, guess: Guess, closeness: Closeness) -> Option<Found> {
         /// A secant that has not settled by then will not.
         const STEPS: usize = 8;
         let Guess {
             mut h,
             mut slope,
             blur,
+            branch,
         } = guess;
         let mut last: Option<(f64, f64)> = None;
         for _ in 0..STEPS {
-            let swept = self.swept(h, branch)?;
+            let (swept, branch) = self.swept(h, branch)?;
             let missing = angle - swept;
             let doubt = if let Some((h0, swept0)) = last {
                 let secant = (h - h0) / (swept - swept0);
@@ -221,7 +223,11 @@ impl<B: Between> Target<B> {
                 || left <= closeness.phi * slope.abs()
                 || (last.is_some() && step.abs() <= 1e-13 * h.abs());
             if near && close {
-                return Some(Found { h: next, slope });
+                return Some(Found {
+                    h: next,
+                    slope,
+                    branch,
+                });
             }
             last = Some((h, swept));
             h = next;
@@ -234,8 +240,8 @@ impl<B: Between> Target<B> {
     /// Secant steps, kept within the bracket that the residuals' signs have shown so far; bisection, or doubling the
     /// step where one end is not known yet, wherever the secant leaves it or the residual is infinite.
     ///
-    /// Its slope is that of h over the residual.
-    pub(super) fn bracket(&self, angle: f64, guess: f64, close: f64) -> Found {
+    /// With it comes its slope over the residual.
+    pub(super) fn bracket(&self, angle: f64, guess: f64, close: f64) -> (f64, f64) {
         const STEPS: usize = 200;
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
         let scale = if guess == 0.0 {
@@ -250,7 +256,7 @@ impl<B: Between> Target<B> {
         for step in 0..STEPS {
             let residual = self.residual(h, angle);
             if residual == 0.0 {
-                return Found { h, slope };
+                return (h, slope);
             }
             if residual < 0.0 {
                 low = low.max(h);
@@ -286,6 +292,6 @@ impl<B: Between> Target<B> {
                 break;
             }
         }
-        Found { h, slope }
+        (h, slope)
     }
 }
