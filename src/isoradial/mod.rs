@@ -121,7 +121,8 @@ impl Order {
         self.number
     }
 
-    /// Its greatest thickness, in pixels; of rays that the picture does not show, in the size of its pixels there.
+    /// Its greatest thickness at its coarsest nodes, in pixels; of rays that the picture does not show, in the size of
+    /// its pixels there.
     pub fn thickness(&self) -> f64 {
         self.thickness
     }

@@ -223,27 +223,36 @@ impl Nodes {
         };
         let mut noise = None;
         loop {
-            let (finer, error) = nodes.refined(target, turns, shown, closeness, FLOOR * allowed);
+            let (finer, mut error) =
+                nodes.refined(target, turns, shown, closeness, FLOOR * allowed);
             // See there.
-            let error = error + 4.0 * solved;
-            let settled = nodes.cells() >= SETTLED_CELLS
-                && error > 0.5 * nodes.interpolation
-                && error <= 100.0 * allowed;
-            let done = error <= allowed
-                || settled
-                || finer.cells() >= MOST_CELLS
-                // Nodes and middles are off by as much as the angles and the arithmetic, which no node mends.
-                || error <= 2.0 * *noise.get_or_insert_with(|| {
-                    let none = EdgeError::default();
-                    let error = finer.error(none, turns, shown, angle_error);
-                    error.angles + error.rounding
-                });
+            let promised = |error: f64| BETWEEN * error + 4.0 * solved;
+            let mut suffices = |error: f64| {
+                let settled = nodes.cells() >= SETTLED_CELLS
+                    && error > 0.5 * nodes.interpolation
+                    && error <= 100.0 * allowed;
+                error <= allowed
+                    || settled
+                    || finer.cells() >= MOST_CELLS
+                    // Nodes and middles are off by as much as the angles and the arithmetic, which no node mends.
+                    || error <= 2.0 * *noise.get_or_insert_with(|| {
+                        let none = EdgeError::default();
+                        let error = finer.error(none, turns, shown, angle_error);
+                        error.angles + error.rounding
+                    })
+            };
+            // The quarters are looked at only where the middles are right.
+            let mut done = suffices(promised(error));
             if done {
-                nodes.interpolation = error;
+                error = finer.off(&nodes.spline, shown, error);
+                done = suffices(promised(error));
+            }
+            if done {
+                nodes.interpolation = promised(error);
                 return nodes;
             }
             nodes = Self {
-                interpolation: error,
+                interpolation: promised(error),
                 ..finer
             };
         }
@@ -350,8 +359,7 @@ impl Nodes {
         })
     }
 
-    /// Twice the cells, and how far the present curve was off on the new nodes and halfway to them, in pixels, if more
-    /// than `floor`.
+    /// Twice the cells, and how far the present curve was off on the new nodes, in pixels, if more than `floor`.
     fn refined<B: Between>(
         &self,
         target: &Target<B>,
@@ -394,8 +402,7 @@ impl Nodes {
             values,
             ..*self
         };
-        error = finer.off(&self.spline, shown, error);
-        (finer, BETWEEN * error)
+        (finer, error)
     }
 
     /// How far a spline on half as many cells is off this curve in the middle of each cell, in pixels, if more than

@@ -189,7 +189,7 @@ impl<B: Between> Target<B> {
     }
 
     /// Newton's step with the guess's slope, and secant steps after it; none where they do not settle.
-    #[inline]
+    #[inline(always)]
     fn converge(&self, angle: f64, guess: Guess, closeness: Closeness) -> Option<Found> {
         /// A secant that has not settled by then will not.
         const STEPS: usize = 8;

@@ -316,7 +316,9 @@ pub(crate) fn coefficients(values: &[f64]) -> Vec<f64> {
     c[0] = 6.0 * values[0] - 4.0 * c[1] - c[2];
     c[n] = 6.0 * values[n - 2] - 4.0 * c[n - 1] - c[n - 2];
     c[n + 1] = 6.0 * values[n - 1] - 4.0 * c[n] - c[n - 1];
-    c.iter_mut().for_each(|c| *c /= 6.0);
+    for c in &mut c {
+        *c /= 6.0;
+    }
     c
 }
 
