@@ -5,6 +5,7 @@
 mod interleaved;
 
 use darkness::isoradial::{Isoradials, Sight};
+use darkness::orbit::exact::Exact;
 use darkness::render::{coverage, mask};
 use darkness::scene::{Scene, View, builtins};
 use darkness::table::{Spec, generate};
@@ -57,6 +58,10 @@ fn main() {
                             let drawn = coverage::render_into(&view, &curves, &mut smooth, width);
                             drawn.map_or(0.0, |()| f64::from(smooth[pixels / 2]))
                         }),
+                    },
+                    Contender {
+                        name: "the curves from exact",
+                        run: Box::new(|| Isoradials::new(&sight, &Exact).nodes() as f64),
                     },
                     Contender {
                         name: "the curves",

@@ -42,20 +42,24 @@ mod patch;
 mod picture;
 mod piece;
 mod range;
+mod runs;
 mod sight;
 mod solve;
+mod turns;
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use crate::orbit::path::SweptAngles;
-use nodes::Nodes;
-pub(crate) use open::{Band, EdgeOf, Found, MOST_BANDS, MOST_EDGES, Open};
+use crate::orbit::path::{Between, SweptAngles};
+use nodes::{Coarsest, LOOKED_AT, Nodes, SOLVED, coarsest};
+pub(crate) use open::{Band, EdgeOf, Listing, MOST_BANDS, MOST_EDGES, Open};
 pub(crate) use patch::{Bent, Patch};
 pub(crate) use picture::{Line, Picture};
 use piece::{Piece, thickness};
 pub use range::{Bundle, Verdict};
+use sight::Shown;
 pub use sight::Sight;
-use solve::Target;
+use solve::{Closeness, Found, Target, target};
+use turns::Turns;
 
 /// The images' orders beyond this one are e^{−12π} as thick as the first: below the rounding of the ray itself.
 const MOST_ORDERS: u32 = 12;
@@ -72,7 +76,7 @@ pub enum Edge {
 /// What an edge may be off by, in pixels: its parts.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EdgeError {
-    /// Between the curves' nodes.
+    /// Between the curves' nodes, and of the nodes themselves.
     pub interpolation: f64,
     /// From the error of the angles that the curves were drawn from.
     pub angles: f64,
@@ -84,14 +88,6 @@ impl EdgeError {
     /// All of it.
     pub fn total(&self) -> f64 {
         self.interpolation + self.angles + self.rounding
-    }
-
-    fn max(self, other: Self) -> Self {
-        Self {
-            interpolation: self.interpolation.max(other.interpolation),
-            angles: self.angles.max(other.angles),
-            rounding: self.rounding.max(other.rounding),
-        }
     }
 }
 
@@ -129,7 +125,8 @@ impl Order {
         self.number
     }
 
-    /// Its greatest thickness, in pixels; of rays that the picture does not show, in the size of its pixels there.
+    /// Its greatest thickness at its coarsest nodes, in pixels; of rays that the picture does not show, in the size of
+    /// its pixels there.
     pub fn thickness(&self) -> f64 {
         self.thickness
     }
@@ -151,9 +148,16 @@ impl Isoradials {
             left_out: None,
             error: EdgeError::default(),
         };
+        let allowed = 0.5 * sight.tolerance;
+        let shown = Shown::new(sight);
+        let closeness = Closeness {
+            psi: SOLVED * allowed / shown.most_per_radian(),
+            phi: 0.0,
+        };
+        let mut hand = hand(sight, &shown, angles);
         for number in 0..MOST_ORDERS {
-            let drawn = Drawn::new(sight, number, 0.5 * sight.tolerance, angles);
-            let thickness = drawn.thickness(sight);
+            let outline = hand.outline(number, closeness);
+            let thickness = outline.thickness(&shown);
             if number > 0 && thickness < sight.tolerance {
                 curves.left_out = Some(Thinness {
                     order: number,
@@ -161,7 +165,8 @@ impl Isoradials {
                 });
                 break;
             }
-            curves.error = curves.error.max(drawn.error(sight, angles.error()));
+            let drawn = hand.refine(outline, allowed);
+            curves.error = hand.error(curves.error, &drawn);
             let pieces = drawn.pieces(number, sight);
             if pieces.iter().any(Option::is_some) {
                 curves.orders.push(Order {
@@ -244,20 +249,32 @@ impl Isoradials {
 /// The ray that reaches an edge in a given angle: its `κ − κ_c`, as right as the method's angles are. `angle` is
 /// above 0; it is the `φ₁ + kπ` of [`Isoradials::height`].
 pub fn height_at(sight: &Sight, edge: Edge, angle: f64, angles: &impl SweptAngles) -> f64 {
-    let target = Target::new(sight, edge);
-    target.solve(angle, target.first_guess(angle), angles)
+    let target = target(sight, edge, angles);
+    target.bracket(angle, target.first_guess(angle), 1e-13).0
 }
 
 /// How far an edge moves when every angle changes: `|∂ψ/∂φ|` of the curves of `sight` at most, in pixels per radian,
 /// from exact angles on the coarsest nodes.
+///
+/// An order's angles all but stand still next to those of the order before: its curves are about e^−π as steep. So
+/// none is looked at after one that, seen or not, would matter no more than what was found.
 pub fn sensitivity(sight: &Sight, angles: &impl SweptAngles) -> f64 {
+    let shown = Shown::new(sight);
+    let closeness = Closeness {
+        psi: 0.0,
+        phi: LOOKED_AT,
+    };
+    let mut hand = hand(sight, &shown, angles);
     let mut most: f64 = 0.0;
     for number in 0..MOST_ORDERS {
-        let drawn = Drawn::new(sight, number, f64::INFINITY, angles);
-        if number > 0 && drawn.thickness(sight) < sight.tolerance {
+        let outline = hand.outline(number, closeness);
+        if number > 0 && outline.thickness(&shown) < sight.tolerance {
             break;
         }
-        most = most.max(drawn.sensitivity(sight));
+        most = most.max(hand.sensitivity(&outline));
+        if number > 0 && hand.steepest() * shown.most_per_radian() <= most {
+            break;
+        }
     }
     most
 }
@@ -274,39 +291,116 @@ fn place(n: f64, d: f64) -> f64 {
     }
 }
 
+/// What draws the curves of one order after the other.
+struct Hand<'a, B> {
+    shown: &'a Shown,
+    /// Of the method's angles.
+    angle_error: f64,
+    /// Inner and outer edge.
+    targets: [Target<B>; 2],
+    /// The nodes of each quarter turn that the picture shows.
+    turns: [Option<Turns>; 2],
+    /// The order before: the coarsest nodes of inner and outer edge of each quarter turn.
+    before: [Option<[Coarsest; 2]>; 2],
+}
+
+/// Nothing is drawn yet.
+fn hand<'a, A: SweptAngles>(
+    sight: &Sight,
+    shown: &'a Shown,
+    angles: &'a A,
+) -> Hand<'a, impl Between> {
+    Hand {
+        shown,
+        angle_error: angles.error(),
+        targets: [Edge::Inner, Edge::Outer].map(|edge| target(sight, edge, angles)),
+        turns: sight.window.quarters().map(|x| x.map(Turns::new)),
+        before: [None, None],
+    }
+}
+
+impl<B: Between> Hand<'_, B> {
+    /// The curves of order `number` on the coarsest nodes, right to `closeness`. The orders come one after the other.
+    fn outline(&mut self, number: u32, closeness: Closeness) -> Drawn {
+        let mut ends: Option<[Found; 2]> = None;
+        Drawn([0, 1].map(|index| {
+            let turns = self.turns[index].as_mut()?;
+            let quarter = Quarter::new(number, index, turns.x());
+            let before = self.before[index].as_ref();
+            let found = [0, 1].map(|edge| {
+                // Of order 1 the curve before has another shape: it begins at the camera.
+                let before = before.filter(|_| number > 1).map(|both| &both[edge]);
+                let end = ends.map(|both| both[edge]).filter(|_| quarter.x.0 == 0.0);
+                coarsest(&self.targets[edge], quarter, turns, before, end, closeness)
+            });
+            ends = (quarter.x.1 == 1.0).then(|| found.map(|found| found[found.len() - 1]));
+            self.before[index] = Some(found);
+            Some([0, 1].map(|edge| Nodes::new(&self.targets[edge], quarter, &found[edge])))
+        }))
+    }
+
+    /// The same curves on as many nodes as it takes for an error of `allowed` pixels.
+    fn refine(&mut self, outline: Drawn, allowed: f64) -> Drawn {
+        let angle_error = self.angle_error;
+        let mut turns = self.turns.iter_mut();
+        Drawn(outline.0.map(|pair| {
+            let turns = turns.next()?.as_mut()?;
+            let mut targets = self.targets.iter();
+            let refined = pair?.map(|nodes| {
+                let target = targets.next()?;
+                Some(nodes.refine(target, turns, self.shown, allowed, angle_error))
+            });
+            let [Some(inner), Some(outer)] = refined else {
+                return None;
+            };
+            Some([inner, outer])
+        }))
+    }
+
+    fn sensitivity(&mut self, drawn: &Drawn) -> f64 {
+        let mut most: f64 = 0.0;
+        for (pair, turns) in drawn.0.iter().zip(&mut self.turns) {
+            if let (Some(pair), Some(turns)) = (pair, turns) {
+                for nodes in pair {
+                    most = nodes.sensitivity(most, turns, self.shown);
+                }
+            }
+        }
+        most
+    }
+
+    /// What these curves, or those before, may be off by.
+    fn error(&mut self, mut error: EdgeError, drawn: &Drawn) -> EdgeError {
+        for (pair, turns) in drawn.0.iter().zip(&mut self.turns) {
+            if let (Some(pair), Some(turns)) = (pair, turns) {
+                for nodes in pair {
+                    error = nodes.error(error, turns, self.shown, self.angle_error);
+                }
+            }
+        }
+        error
+    }
+
+    /// `|∂ψ/∂φ|` of the last order's curves at most, seen or not, on the coarsest nodes; infinite if a slope is not
+    /// known.
+    fn steepest(&self) -> f64 {
+        let points = self.before.iter().flatten().flatten().flatten();
+        points.fold(0.0, |most: f64, point| {
+            let kappa = self.shown.critical + point.h;
+            let slope = point.slope.abs() / (1.0 + kappa * kappa);
+            most.max(if slope.is_nan() { f64::INFINITY } else { slope })
+        })
+    }
+}
+
 /// The curves of one order on the nodes they were drawn on, inner and outer edge of each quarter turn.
 struct Drawn([Option<[Nodes; 2]>; 2]);
 
 impl Drawn {
-    fn new(sight: &Sight, number: u32, allowed: f64, angles: &impl SweptAngles) -> Self {
-        let [first, second] = sight.window.quarters();
-        let draw = |index: u32, x: (f64, f64)| {
-            let quarter = Quarter::new(number, index, x);
-            [Edge::Inner, Edge::Outer]
-                .map(|edge| Nodes::draw(&Target::new(sight, edge), quarter, sight, allowed, angles))
-        };
-        Self([first.map(|x| draw(0, x)), second.map(|x| draw(1, x))])
-    }
-
-    fn curves(&self) -> impl Iterator<Item = &Nodes> {
-        self.0.iter().flatten().flatten()
-    }
-
-    fn thickness(&self, sight: &Sight) -> f64 {
+    fn thickness(&self, shown: &Shown) -> f64 {
         let pairs = self.0.iter().flatten();
         pairs.fold(0.0, |most: f64, [inner, outer]| {
-            most.max(thickness(inner, outer, sight))
-        })
-    }
-
-    fn sensitivity(&self, sight: &Sight) -> f64 {
-        self.curves()
-            .fold(0.0, |most, nodes| most.max(nodes.sensitivity(sight)))
-    }
-
-    fn error(&self, sight: &Sight, angle_error: f64) -> EdgeError {
-        self.curves().fold(EdgeError::default(), |most, nodes| {
-            most.max(nodes.error(sight, angle_error))
+            most.max(thickness(inner, outer, shown))
         })
     }
 
@@ -333,34 +427,58 @@ struct Quarter {
 }
 
 impl Quarter {
-    /// The quarter turn `index` (0 or 1) of order `number`, between two places. Those closer than a share of 1e-6
-    /// (a camera on the disk's axis meets its plane at one angle) are taken that far apart: nodes need a distance.
-    fn new(number: u32, index: u32, x: (f64, f64)) -> Self {
-        const CLOSEST: f64 = 1e-6;
-        let middle = (0.5 * (x.0 + x.1)).clamp(CLOSEST, 1.0 - CLOSEST);
+    /// The quarter turn `index` (0 or 1) of order `number`, between two places.
+    fn new(number: u32, index: usize, x: (f64, f64)) -> Self {
         Self {
-            start: f64::from(number) * PI + f64::from(index) * FRAC_PI_2,
+            start: f64::from(number) * PI + if index == 0 { 0.0 } else { FRAC_PI_2 },
             pole: number == 0 && index == 0,
-            x: (x.0.min(middle - CLOSEST), x.1.max(middle + CLOSEST)),
+            x,
         }
     }
 
     /// The place at a share of the way, the ends exactly.
     fn x_at(self, share: f64) -> f64 {
-        if share >= 1.0 {
-            self.x.1
-        } else {
-            self.x.0 + (self.x.1 - self.x.0) * share
-        }
-    }
-
-    /// The orbit angle at x: `tan(φ − start) = x/(1 − x)`.
-    fn angle(self, x: f64) -> f64 {
-        self.start + libm::atan2(x, 1.0 - x)
+        x_at(self.x, share)
     }
 
     /// h over what is kept of it at x.
     fn over_kept(self, x: f64) -> f64 {
         if self.pole { 1.0 / x } else { 1.0 }
+    }
+
+    /// h, dh/dφ and d²h/dφ² at x, from what is kept of h there and its derivatives in x: `dx/dφ = x² + (1 − x)²`.
+    fn along(self, x: f64, (y, slope, bend): (f64, f64, f64)) -> (f64, f64, f64) {
+        let (h, slope, bend) = if self.pole {
+            let h = y / x;
+            let h_slope = (slope - h) / x;
+            (h, h_slope, (bend - 2.0 * h_slope) / x)
+        } else {
+            (y, slope, bend)
+        };
+        let rate = x * x + (1.0 - x) * (1.0 - x);
+        (
+            h,
+            slope * rate,
+            (bend * rate + slope * (4.0 * x - 2.0)) * rate,
+        )
+    }
+
+    /// What is kept of the point at x, and its derivative in x.
+    fn kept(self, x: f64, point: Found) -> (f64, f64) {
+        let slope = point.slope / (x * x + (1.0 - x) * (1.0 - x));
+        if self.pole {
+            (point.h * x, point.h + slope * x)
+        } else {
+            (point.h, slope)
+        }
+    }
+}
+
+/// The place at a share of the way from one to another, the ends exactly.
+fn x_at(x: (f64, f64), share: f64) -> f64 {
+    if share >= 1.0 {
+        x.1
+    } else {
+        x.0 + (x.1 - x.0) * share
     }
 }

@@ -85,9 +85,9 @@ impl EdgeOf {
 
 /// What is told of the edges that are open over patches: a trait, for the instructions of a closure's caller are not
 /// always its own.
-pub(crate) trait Found<T> {
+pub(crate) trait Listing<T> {
     /// An edge is open over those of the patches that there is a bit for.
-    fn found(&mut self, of: EdgeOf, patches: u32, bent: &Bent<T>);
+    fn list(&mut self, of: EdgeOf, patches: u32, bent: &Bent<T>);
 }
 
 impl Isoradials {
@@ -100,7 +100,7 @@ impl Isoradials {
         patch: &Patch<T>,
         active: u32,
         before: Open,
-        found: &mut impl Found<T>,
+        list: &mut impl Listing<T>,
     ) -> Sifted {
         let pieces = self.quarter(patch.quarter());
         let none = patch.none();
@@ -133,11 +133,11 @@ impl Isoradials {
             }
             if let (Some(bent), true) = (&outer, within & unsure[0] != 0) {
                 let edge = Edge::Outer;
-                found.found(EdgeOf { piece, edge }, within & unsure[0], bent);
+                list.list(EdgeOf { piece, edge }, within & unsure[0], bent);
             }
             if let (Some(bent), true) = (&inner, within & unsure[1] != 0) {
                 let edge = Edge::Inner;
-                found.found(EdgeOf { piece, edge }, within & unsure[1], bent);
+                list.list(EdgeOf { piece, edge }, within & unsure[1], bent);
             }
             let unsure = within & (unsure[0] | unsure[1]);
             hit |= within & !unsure;

@@ -2,9 +2,12 @@
 
 use super::Edge;
 use super::nodes::Nodes;
-use super::sight::Sight;
+use super::runs::Runs;
+use super::sight::Shown;
 use crate::lanes::Real;
-use crate::table::spline::{Jet, Scale, Stencil, bounds, jet, thirds, value, value_and_slope};
+use crate::table::spline::{
+    Jet, Scale, Stencil, bounds, cell_bounds, jet, thirds, value, value_and_slope,
+};
 
 /// A quarter turn of both curves, as splines in x of `h` (or `x h` where h has a pole).
 #[derive(Debug, Clone)]
@@ -18,6 +21,8 @@ pub(super) struct Piece {
     outer: Vec<f64>,
     inner_thirds: Vec<f64>,
     outer_thirds: Vec<f64>,
+    inner_runs: Runs,
+    outer_runs: Runs,
     /// No ray of this piece meets the disk with `h` below this
     pub(super) lowest: f64,
     /// or above this.
@@ -30,28 +35,52 @@ impl Piece {
         let count = inner.count().max(outer.count());
         let finer = if inner.count() == count { inner } else { outer };
         let axis = Scale::new(finer.axis());
-        let (inner, outer) = (inner.spline(count), outer.spline(count));
+        let (inner_spline, outer_spline) = (inner.spline(count), outer.spline(count));
         let mut piece = Self {
             order,
             axis,
             pole: finer.quarter.pole,
-            inner_thirds: thirds(&inner, axis),
-            outer_thirds: thirds(&outer, axis),
-            inner,
-            outer,
+            inner_thirds: thirds(&inner_spline, axis),
+            outer_thirds: thirds(&outer_spline, axis),
+            inner: inner_spline,
+            outer: outer_spline,
+            inner_runs: Runs::new(core::iter::empty()),
+            outer_runs: Runs::new(core::iter::empty()),
             lowest: f64::INFINITY,
             highest: f64::NEG_INFINITY,
         };
-        for cell in 1..count {
-            let x = (finer.x(cell - 1), finer.x(cell));
-            piece.lowest = piece.lowest.min(piece.bounds(Edge::Outer, x).0);
-            piece.highest = piece.highest.max(piece.bounds(Edge::Inner, x).1);
-        }
+        let runs = |edge| {
+            Runs::new((0..count - 1).map(|cell| {
+                if piece.pole {
+                    piece.bounds_from_values(edge, (finer.x(cell), finer.x(cell + 1)))
+                } else {
+                    cell_bounds(piece.spline(edge), cell)
+                }
+            }))
+        };
+        let (inner, outer) = (runs(Edge::Inner), runs(Edge::Outer));
+        piece.lowest = outer.over(0, count - 2).0;
+        piece.highest = inner.over(0, count - 2).1;
+        (piece.inner_runs, piece.outer_runs) = (inner, outer);
         piece
     }
 
     /// Bounds of h over an interval of x.
     pub(super) fn bounds(&self, edge: Edge, x: (f64, f64)) -> (f64, f64) {
+        /// Of fewer cells than these the values at both ends tell more than the cells' bounds.
+        const FEW: usize = 4;
+        let (first, last) = self.axis.cells(x);
+        if last - first < FEW {
+            return self.bounds_from_values(edge, x);
+        }
+        let runs = match edge {
+            Edge::Inner => &self.inner_runs,
+            Edge::Outer => &self.outer_runs,
+        };
+        runs.over(first, last)
+    }
+
+    fn bounds_from_values(&self, edge: Edge, x: (f64, f64)) -> (f64, f64) {
         let values = bounds(self.spline(edge), self.axis, x);
         if !self.pole {
             return values;
@@ -136,7 +165,7 @@ impl Piece {
 }
 
 /// The greatest distance between two curves drawn over the same x, in pixels.
-pub(super) fn thickness(inner: &Nodes, outer: &Nodes, sight: &Sight) -> f64 {
+pub(super) fn thickness(inner: &Nodes, outer: &Nodes, shown: &Shown) -> f64 {
     let count = inner.count().min(outer.count());
     // Nodes are doubled: those of the coarser curve are nodes of the finer one too.
     let (step_inner, step_outer) = (
@@ -145,7 +174,7 @@ pub(super) fn thickness(inner: &Nodes, outer: &Nodes, sight: &Sight) -> f64 {
     );
     (0..count).fold(0.0, |thickness: f64, i| {
         let (high, low) = (inner.height(i * step_inner), outer.height(i * step_outer));
-        thickness.max(sight.pixels((low, high)))
+        shown.apart(thickness, (low.min(high), low.max(high)))
     })
 }
 

@@ -110,6 +110,96 @@ impl Sight {
     }
 }
 
+/// What the picture shows of curves: a [`Sight`]'s distances without trigonometry.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shown {
+    pub(super) critical: f64,
+    /// Least and greatest h.
+    heights: (f64, f64),
+    /// Cosine and sine of [`Sight::axis`].
+    axis: (f64, f64),
+    /// Cosine of [`Sight::corner`].
+    corner: f64,
+    pixel: f64,
+    most_per_radian: f64,
+}
+
+impl Shown {
+    pub(super) fn new(sight: &Sight) -> Self {
+        let corner = libm::cos(sight.corner);
+        Self {
+            critical: sight.critical(),
+            heights: sight.heights(),
+            axis: (libm::cos(sight.axis), libm::sin(sight.axis)),
+            corner,
+            pixel: sight.pixel,
+            most_per_radian: 1.0 / (sight.pixel * corner * corner),
+        }
+    }
+
+    /// The most pixels that a radian is anywhere.
+    pub(super) fn most_per_radian(&self) -> f64 {
+        self.most_per_radian
+    }
+
+    /// [`Sight::pixels_per_radian`] at the angle of which `kappa` is the cotangent.
+    pub(super) fn per_radian(&self, kappa: f64) -> f64 {
+        let length = (1.0 + kappa * kappa).sqrt();
+        let (along, across) = if length.is_finite() {
+            (kappa / length, 1.0 / length)
+        } else {
+            (1.0_f64.copysign(kappa), 0.0)
+        };
+        let (cosine, sine) = self.axis;
+        // Beyond π the cosine rises again, and the corner is what is nearer.
+        let cosine = if across * cosine + along * sine >= 0.0 {
+            (along * cosine - across * sine).max(self.corner)
+        } else {
+            self.corner
+        };
+        1.0 / (self.pixel * cosine * cosine)
+    }
+
+    /// Whether the picture shows any ray of an interval of h.
+    pub(super) fn reaches(&self, h: (f64, f64)) -> bool {
+        h.0.min(h.1) <= self.heights.1 && h.0.max(h.1) >= self.heights.0
+    }
+
+    /// The distance of two rays in pixels, at most: [`Sight::pixels`], if more than `most`.
+    #[inline]
+    pub(super) fn apart(&self, most: f64, (low, high): (f64, f64)) -> f64 {
+        let (first, second) = (self.critical + low, self.critical + high);
+        // The tangent of the angle between them is (high − low) over this.
+        let over = 1.0 + first * second;
+        if over > 0.0 && (high - low) * self.most_per_radian <= most * over {
+            return most;
+        }
+        most.max(self.per_radian(first) * between(low, high, self.critical))
+    }
+
+    /// The distance of two rays in pixels, if more than `most`; not where the cell they lie in, from one of its ends to
+    /// the other and as far beyond as the two are apart, is not in the picture.
+    #[inline]
+    pub(super) fn farthest(&self, most: f64, a: f64, b: f64, ends: (f64, f64)) -> f64 {
+        let (low, high) = (a.min(b), a.max(b));
+        let over = 1.0 + (self.critical + low) * (self.critical + high);
+        if over > 0.0 && (high - low) * self.most_per_radian <= most * over {
+            return most;
+        }
+        let apart = high - low;
+        let reach = (
+            ends.0.min(ends.1).min(low) - apart,
+            ends.0.max(ends.1).max(high) + apart,
+        );
+        if !self.reaches(reach) {
+            return most;
+        }
+        // The farthest from the hole's direction that the picture shows of it, where pixels are smallest.
+        let farthest = self.critical + reach.0.max(self.heights.0);
+        most.max(self.per_radian(farthest) * between(low, high, self.critical))
+    }
+}
+
 /// The rays of the whole picture, from its bundle where that tells anything, and from the circle about its centre.
 fn window(bundle: Option<Bundle>, view: &View, axis: f64, corner: f64) -> Bundle {
     // Of the bounds' own rounding nothing may be cut off.
@@ -162,5 +252,12 @@ pub(super) fn between(low: f64, high: f64, critical: f64) -> f64 {
     if first.is_infinite() || second.is_infinite() {
         return angle(first) - angle(second);
     }
-    libm::atan2(high - low, 1.0 + first * second)
+    let over = 1.0 + first * second;
+    let tangent = (high - low) / over;
+    // The tangent of a small angle is larger by a third of its cube.
+    if (0.0..1e-5).contains(&tangent) {
+        tangent
+    } else {
+        libm::atan2(high - low, over)
+    }
 }

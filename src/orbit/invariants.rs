@@ -52,6 +52,7 @@ impl Orbit {
 
     /// The orbit that starts at inverse radius `u` with slope `w`, whose `Δ = w² + u²(1 − u) − 4/27` is known better
     /// than the two tell.
+    #[inline(always)]
     pub(crate) fn with_delta(u: f64, w: f64, delta: f64) -> Self {
         let slope = w.abs();
         let family = if delta > 0.0 {
@@ -71,6 +72,7 @@ impl Orbit {
     }
 
     /// How the ray ends.
+    #[inline]
     pub fn fate(&self) -> Fate {
         match self.family {
             Family::Monotone if self.inward => Fate::Capture,
@@ -81,36 +83,9 @@ impl Orbit {
 
     /// The orbit's point at inverse radius `u`, if the orbit reaches it (before or after its turning point; a radius
     /// that it only touches is not reached).
-    ///
-    /// `u̇² = u̇0² + (u0 − u)(u0 + u − u0² − u0 u − u²)`: the start's slope and a difference that is exact for
-    /// neighbouring radii. About the photon sphere the second factor vanishes too; with `x = u − 2/3` it is
-    /// `−(x0 + x + x0² + x0 x + x²)`, which keeps its digits there.
+    #[inline]
     pub fn point_at(&self, u: f64) -> Option<Point> {
-        let u0 = self.start.u;
-        let factor = if u0 + u > 1.0 {
-            let (x0, x) = (three_u_minus_two(u0) / 3.0, three_u_minus_two(u) / 3.0);
-            -(x0 + x + x0 * x0 + x0 * x + x * x)
-        } else {
-            u0 + u - u0 * u0 - u0 * u - u * u
-        };
-        let slope2 = self.start.slope * self.start.slope;
-        // Where u̇² is small against the start's, which is nearer to the photon sphere, a difference from the start's
-        // keeps few digits, and s² + Δ all of them.
-        let s = critical_slope(u);
-        let squared = if s * s + self.delta.abs() < slope2 {
-            s * s + self.delta
-        } else {
-            slope2 + (u0 - u) * factor
-        };
-        let same_side = match self.family {
-            Family::Monotone => true,
-            Family::Scattered => three_u_minus_two(u) < 0.0,
-            Family::Trapped => three_u_minus_two(u) > 0.0,
-        };
-        (same_side && squared > 0.0).then(|| Point {
-            u,
-            slope: squared.sqrt(),
-        })
+        Way::new(self.start.u, u).end(self)
     }
 
     /// The orbit's end: r = ∞ or the horizon. There `|du/dφ| = e`.
@@ -123,6 +98,66 @@ impl Orbit {
             u,
             slope: self.e2.sqrt(),
         }
+    }
+}
+
+/// From one inverse radius to another: what orbits between them have in common.
+///
+/// `u̇² = u̇0² + (u0 − u)(u0 + u − u0² − u0 u − u²)`: the start's slope and a difference that is exact for
+/// neighbouring radii. About the photon sphere the second factor vanishes too; with `x = u − 2/3` it is
+/// `−(x0 + x + x0² + x0 x + x²)`, which keeps its digits there.
+#[derive(Debug, Clone, Copy)]
+pub struct Way {
+    /// Where it ends.
+    u: f64,
+    /// Whether that is inside the photon sphere.
+    inside: bool,
+    /// What is added to `u̇²` on the way.
+    gain: f64,
+    /// `u̇²` of the critical ray at its end.
+    critical: f64,
+}
+
+impl Way {
+    /// From inverse radius `u0` to `u`.
+    #[inline]
+    pub fn new(u0: f64, u: f64) -> Self {
+        let factor = if u0 + u > 1.0 {
+            let (x0, x) = (three_u_minus_two(u0) / 3.0, three_u_minus_two(u) / 3.0);
+            -(x0 + x + x0 * x0 + x0 * x + x * x)
+        } else {
+            u0 + u - u0 * u0 - u0 * u - u * u
+        };
+        let s = critical_slope(u);
+        Self {
+            u,
+            inside: three_u_minus_two(u) > 0.0,
+            gain: (u0 - u) * factor,
+            critical: s * s,
+        }
+    }
+
+    /// Where `orbit`, which starts where the way does, is at the way's end, if it gets there: see
+    /// [`Orbit::point_at`].
+    #[inline(always)]
+    pub fn end(&self, orbit: &Orbit) -> Option<Point> {
+        let slope2 = orbit.start.slope * orbit.start.slope;
+        // Where u̇² is small against the start's, which is nearer to the photon sphere, a difference from the start's
+        // keeps few digits, and s² + Δ all of them.
+        let squared = if self.critical + orbit.delta.abs() < slope2 {
+            self.critical + orbit.delta
+        } else {
+            slope2 + self.gain
+        };
+        let same_side = match orbit.family {
+            Family::Monotone => true,
+            Family::Scattered => !self.inside,
+            Family::Trapped => self.inside,
+        };
+        (same_side && squared > 0.0).then(|| Point {
+            u: self.u,
+            slope: squared.sqrt(),
+        })
     }
 }
 

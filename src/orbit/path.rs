@@ -29,25 +29,14 @@ pub trait SweptAngles: Sync {
 
     /// The angles at which the orbit crosses inverse radius `u`: inbound, outbound. The start is no crossing.
     fn crossings(&self, orbit: &Orbit, u: f64) -> Crossings {
-        let start = orbit.start;
-        let Some(point) = orbit.point_at(u) else {
-            return Crossings::default();
-        };
-        let first = ahead(orbit, u).then(|| self.direct(orbit, start, point));
-        // What lies on the way to the turning point is crossed again after it, and so is all that lies behind the
-        // start.
-        let second = turns(orbit).then(|| self.around(orbit, start, point));
-        if orbit.inward {
-            Crossings {
-                inbound: first,
-                outbound: second,
-            }
-        } else {
-            Crossings {
-                inbound: second,
-                outbound: first,
-            }
-        }
+        Anywhere(self).crossings(orbit, orbit.point_at(u))
+    }
+
+    /// The same angles, for one orbit after the other, of orbits that start at inverse radius `from`, to `to`: where
+    /// a method knows what depends on the two alone, it is found once.
+    fn between(&self, from: f64, to: f64) -> impl Between {
+        let _ = (from, to);
+        Anywhere(self)
     }
 
     /// The first of [`Self::crossings`].
@@ -62,8 +51,73 @@ pub trait SweptAngles: Sync {
     }
 }
 
+/// A method's swept angles from the start of orbits, which is at one radius, to their points at another.
+pub trait Between {
+    /// [`SweptAngles::direct`] from the start.
+    fn direct(&self, orbit: &Orbit, to: Point) -> f64;
+
+    /// [`SweptAngles::around`] from the start.
+    fn around(&self, orbit: &Orbit, to: Point) -> f64;
+
+    /// The angles at which the orbit is at a point of its own, if it has it, inbound and outbound.
+    fn crossings(&self, orbit: &Orbit, point: Option<Point>) -> Crossings {
+        let Some(point) = point else {
+            return Crossings::default();
+        };
+        let first = ahead(orbit, point.u).then(|| self.direct(orbit, point));
+        // What lies on the way to the turning point is crossed again after it, and so is all that lies behind the
+        // start.
+        let second = turns(orbit).then(|| self.around(orbit, point));
+        if orbit.inward {
+            Crossings {
+                inbound: first,
+                outbound: second,
+            }
+        } else {
+            Crossings {
+                inbound: second,
+                outbound: first,
+            }
+        }
+    }
+}
+
+/// Between any two radii, of a method that knows nothing of them beforehand.
+struct Anywhere<'a, A: ?Sized>(&'a A);
+
+impl<A: SweptAngles + ?Sized> Between for Anywhere<'_, A> {
+    #[inline]
+    fn direct(&self, orbit: &Orbit, to: Point) -> f64 {
+        self.0.direct(orbit, orbit.start, to)
+    }
+
+    #[inline]
+    fn around(&self, orbit: &Orbit, to: Point) -> f64 {
+        self.0.around(orbit, orbit.start, to)
+    }
+}
+
+/// The two ways from an orbit's start to a radius.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Branch {
+    /// Straight there.
+    Direct,
+    /// Over the turning point.
+    Around,
+}
+
+impl Branch {
+    /// The other one.
+    pub(crate) fn other(self) -> Self {
+        match self {
+            Self::Direct => Self::Around,
+            Self::Around => Self::Direct,
+        }
+    }
+}
+
 /// Whether the orbit leaves its start towards inverse radius `u`.
-fn ahead(orbit: &Orbit, u: f64) -> bool {
+pub(crate) fn ahead(orbit: &Orbit, u: f64) -> bool {
     if orbit.inward {
         u > orbit.start.u
     } else {
@@ -72,7 +126,7 @@ fn ahead(orbit: &Orbit, u: f64) -> bool {
 }
 
 /// Whether the orbit's turning point is still ahead of its start.
-fn turns(orbit: &Orbit) -> bool {
+pub(crate) fn turns(orbit: &Orbit) -> bool {
     match orbit.family {
         Family::Monotone => false,
         Family::Scattered => orbit.inward,

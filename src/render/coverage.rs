@@ -16,7 +16,7 @@ use super::group::{Asked, Group};
 use super::tiles::{Kind, Pixels, fill_frame};
 use super::{RenderError, blank};
 use crate::isoradial::{
-    Band, Bent, Bundle, Edge, EdgeOf, Found, Isoradials, Line, MOST_BANDS, Open, Patch, Picture,
+    Band, Bent, Bundle, Edge, EdgeOf, Isoradials, Line, Listing, MOST_BANDS, Open, Patch, Picture,
     Verdict,
 };
 use crate::lanes::{Level, Real, dispatch};
@@ -214,8 +214,8 @@ struct Listed<'a> {
     piece: Option<usize>,
 }
 
-impl Found<f64> for Listed<'_> {
-    fn found(&mut self, of: EdgeOf, _: u32, bent: &Bent) {
+impl Listing<f64> for Listed<'_> {
+    fn list(&mut self, of: EdgeOf, _: u32, bent: &Bent) {
         let open = &mut *self.open;
         if self.piece != Some(of.piece) {
             self.piece = Some(of.piece);

@@ -11,7 +11,7 @@ use fearless_simd::{Simd, SimdBase, f32x8, f64x4};
 use super::coverage::STRAIGHT;
 use super::mask::WHITE;
 use super::tiles::Kind;
-use crate::isoradial::{Bent, Edge, EdgeOf, Found, MOST_EDGES, Open, Patch, Picture};
+use crate::isoradial::{Bent, Edge, EdgeOf, Listing, MOST_EDGES, Open, Patch, Picture};
 use crate::lanes::{Level, Real, dispatch};
 
 /// How many tiles stand side by side.
@@ -257,9 +257,9 @@ struct Listed<'a, T> {
     kind: Kind,
 }
 
-impl<T: Real + Into<[f64; TILES]>> Found<T> for Listed<'_, T> {
+impl<T: Real + Into<[f64; TILES]>> Listing<T> for Listed<'_, T> {
     #[inline(always)]
-    fn found(&mut self, of: EdgeOf, tiles: u32, bent: &Bent<T>) {
+    fn list(&mut self, of: EdgeOf, tiles: u32, bent: &Bent<T>) {
         let (quadratics, good) = quadratics(self.patch, bent, of.edge, self.kind);
         self.group.quadratic &= good | !tiles;
         self.group.edges[self.group.count] = GroupEdge {

@@ -8,7 +8,7 @@ use super::logarithm::ln_ratio;
 use super::spec::{Axes, Spec};
 use super::spline::Scale;
 use crate::orbit::invariants::{Family, Orbit, Point, three_u_minus_two};
-use crate::orbit::path::SweptAngles;
+use crate::orbit::path::{Between, SweptAngles};
 use wide::f64x2;
 
 /// A table's numbers, ready for lookups: a method like any other (see [`crate::orbit`]).
@@ -48,6 +48,13 @@ impl<'a> Chart<'a> {
             place: Scale::new(axes.place),
             orbit: Scale::new(axes.orbit),
         }
+    }
+
+    /// The numbers along the orbit's axis at one place.
+    fn column<K: Interpolation>(&self, place: f64) -> Vec<f64> {
+        let place = K::place(self.place, place);
+        let rows = self.numbers.chunks_exact(self.width);
+        rows.map(|row| K::value(row, &place)).collect()
     }
 
     /// The values at two places of one orbit.
@@ -97,20 +104,99 @@ impl<'a, K: Interpolation> Lookup<'a, K> {
         angles.to_array()
     }
 
-    /// `A`, and at both points the smooth part of J, `|u̇|/(u + 0.28) B`, and the argument of its logarithm, `s + |u̇|`.
+    /// What the critical chart says of two points of an orbit.
     #[inline(always)]
-    fn critical_parts(&self, orbit: &Orbit, points: Pair) -> (f64, [f64; 2], [f64; 2]) {
-        let Pair { u, slope } = points;
+    fn critical_parts(&self, orbit: &Orbit, points: Pair) -> Critical {
         let row = K::place(self.critical.orbit, orbit.e2.sqrt());
-        let gamma = (u + 1.0 / 3.0).sqrt();
-        let smooth = slope / (u + CRITICAL_POLE) * self.critical.at::<K>(&row, gamma);
-        let s = ((u + u - 1.0) + (u - 1.0)).abs() * (gamma * (1.0 / 3.0));
-        (
-            K::value(self.amplitude, &row),
-            smooth.to_array(),
-            (s + slope).to_array(),
-        )
+        let Pair { u, slope } = points;
+        let (gamma, s) = gamma_and_s(u);
+        Critical {
+            amplitude: K::value(self.amplitude, &row),
+            smooth: slope / (u + CRITICAL_POLE) * self.critical.at::<K>(&row, gamma),
+            arguments: s + slope,
+        }
     }
+
+    /// [`SweptAngles::direct`], with the critical chart's parts where they are needed.
+    #[inline(always)]
+    fn direct_from(
+        &self,
+        orbit: &Orbit,
+        from: Point,
+        to: Point,
+        critical: impl FnOnce(Pair) -> Critical,
+    ) -> f64 {
+        let points = Pair::new(from, to);
+        if orbit.e2 > UPPER_E2 {
+            let b2 = 1.0 / orbit.e2;
+            let row = K::place(self.radial.orbit, b2);
+            let [first, second] = self.radial.at::<K>(&row, points.u).to_array();
+            return (second - first).abs() * b2.sqrt();
+        }
+        if orbit.e2 < LOWER_E2 {
+            let [first, second] = self.angles_to_turning_point(orbit, points);
+            return (first - second).abs();
+        }
+        let parts = critical(points);
+        let (smooth, arguments) = (parts.smooth.to_array(), parts.arguments.to_array());
+        let (inside0, inside1) = (
+            three_u_minus_two(from.u) > 0.0,
+            three_u_minus_two(to.u) > 0.0,
+        );
+        // On one side of the photon sphere √|Δ| cancels between the logarithms; across it (Δ > 0) they add up.
+        let logarithm = if inside0 == inside1 {
+            ln_ratio(arguments[1], arguments[0])
+        } else {
+            ln_ratio(arguments[0] * arguments[1], orbit.delta)
+        };
+        let sign = if inside1 { 1.0 } else { -1.0 };
+        (sign * parts.amplitude * logarithm + (smooth[1] - smooth[0])).abs()
+    }
+
+    /// [`SweptAngles::around`], with the critical chart's parts where they are needed.
+    #[inline(always)]
+    fn around_from(
+        &self,
+        orbit: &Orbit,
+        from: Point,
+        to: Point,
+        critical: impl FnOnce(Pair) -> Critical,
+    ) -> f64 {
+        let points = Pair::new(from, to);
+        if orbit.e2 < LOWER_E2 {
+            let [first, second] = self.angles_to_turning_point(orbit, points);
+            return first + second;
+        }
+        let parts = critical(points);
+        let (smooth, arguments) = (parts.smooth.to_array(), parts.arguments.to_array());
+        let logarithms = parts.amplitude * ln_ratio(arguments[0] * arguments[1], -orbit.delta);
+        let smooth = smooth[0] + smooth[1];
+        let angle = if orbit.family == Family::Trapped {
+            logarithms + smooth
+        } else {
+            logarithms - smooth
+        };
+        // From turning point to turning point it is 0, but for the rounding of two terms that cancel.
+        angle.max(0.0)
+    }
+}
+
+/// What the critical chart says of two points of an orbit.
+struct Critical {
+    /// `A`.
+    amplitude: f64,
+    /// The smooth part of J, `|u̇|/(u + 0.28) B`.
+    smooth: f64x2,
+    /// The argument of its logarithm, `s + |u̇|`.
+    arguments: f64x2,
+}
+
+/// γ and s at two radii.
+#[inline(always)]
+fn gamma_and_s(u: f64x2) -> (f64x2, f64x2) {
+    let gamma = (u + 1.0 / 3.0).sqrt();
+    let s = ((u + u - 1.0) + (u - 1.0)).abs() * (gamma * (1.0 / 3.0));
+    (gamma, s)
 }
 
 /// Two points of an orbit, side by side.
@@ -138,46 +224,116 @@ impl<K: Interpolation> SweptAngles for Lookup<'_, K> {
 
     #[inline]
     fn direct(&self, orbit: &Orbit, from: Point, to: Point) -> f64 {
-        if orbit.e2 > UPPER_E2 {
-            let b2 = 1.0 / orbit.e2;
-            let row = K::place(self.radial.orbit, b2);
-            let [first, second] = self.radial.at::<K>(&row, Pair::new(from, to).u).to_array();
-            return (second - first).abs() * b2.sqrt();
-        }
-        if orbit.e2 < LOWER_E2 {
-            let [first, second] = self.angles_to_turning_point(orbit, Pair::new(from, to));
-            return (first - second).abs();
-        }
-        let (amplitude, smooth, arguments) = self.critical_parts(orbit, Pair::new(from, to));
-        let (inside0, inside1) = (
-            three_u_minus_two(from.u) > 0.0,
-            three_u_minus_two(to.u) > 0.0,
-        );
-        // On one side of the photon sphere √|Δ| cancels between the logarithms; across it (Δ > 0) they add up.
-        let logarithm = if inside0 == inside1 {
-            ln_ratio(arguments[1], arguments[0])
-        } else {
-            ln_ratio(arguments[0] * arguments[1], orbit.delta)
-        };
-        let sign = if inside1 { 1.0 } else { -1.0 };
-        (sign * amplitude * logarithm + (smooth[1] - smooth[0])).abs()
+        self.direct_from(orbit, from, to, |points| self.critical_parts(orbit, points))
     }
 
     #[inline]
     fn around(&self, orbit: &Orbit, from: Point, to: Point) -> f64 {
-        if orbit.e2 < LOWER_E2 {
-            let [first, second] = self.angles_to_turning_point(orbit, Pair::new(from, to));
-            return first + second;
+        self.around_from(orbit, from, to, |points| self.critical_parts(orbit, points))
+    }
+
+    /// With the critical chart's columns at both radii: of all charts it is the one that fixed radii are columns of,
+    /// and whose orbits most curves are made of.
+    fn between(&self, from: f64, to: f64) -> impl Between {
+        let (gamma, s) = gamma_and_s(f64x2::new([from, to]));
+        let [from, to] = [(from, gamma.to_array()[0]), (to, gamma.to_array()[1])];
+        LookupBetween {
+            lookup: *self,
+            columns: [from, to].map(|(u, gamma)| {
+                let mut column = self.critical.column::<K>(gamma);
+                for b in &mut column {
+                    *b /= u + CRITICAL_POLE;
+                }
+                column
+            }),
+            s,
         }
-        let (amplitude, smooth, arguments) = self.critical_parts(orbit, Pair::new(from, to));
-        let logarithms = amplitude * ln_ratio(arguments[0] * arguments[1], -orbit.delta);
-        let smooth = smooth[0] + smooth[1];
-        let angle = if orbit.family == Family::Trapped {
-            logarithms + smooth
-        } else {
-            logarithms - smooth
-        };
-        // From turning point to turning point it is 0, but for the rounding of two terms that cancel.
-        angle.max(0.0)
+    }
+}
+
+/// Angles between two radii: those of the table, but for rounding.
+struct LookupBetween<'a, K> {
+    lookup: Lookup<'a, K>,
+    /// `B/(u + 0.28)` at both radii, on the critical chart's orbit axis.
+    columns: [Vec<f64>; 2],
+    /// s at both radii.
+    s: f64x2,
+}
+
+impl<K: Interpolation> LookupBetween<'_, K> {
+    #[inline(always)]
+    fn critical_parts(&self, orbit: &Orbit, slope: f64x2) -> Critical {
+        let row = K::place(self.lookup.critical.orbit, orbit.e2.sqrt());
+        let [first, second] = &self.columns;
+        Critical {
+            amplitude: K::value(self.lookup.amplitude, &row),
+            smooth: slope * f64x2::new([K::value(first, &row), K::value(second, &row)]),
+            arguments: self.s + slope,
+        }
+    }
+}
+
+impl<K: Interpolation> Between for LookupBetween<'_, K> {
+    #[inline]
+    fn direct(&self, orbit: &Orbit, to: Point) -> f64 {
+        self.lookup.direct_from(orbit, orbit.start, to, |points| {
+            self.critical_parts(orbit, points.slope)
+        })
+    }
+
+    #[inline]
+    fn around(&self, orbit: &Orbit, to: Point) -> f64 {
+        self.lookup.around_from(orbit, orbit.start, to, |points| {
+            self.critical_parts(orbit, points.slope)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::orbit::Ray;
+    use crate::orbit::path::turns;
+    use crate::table::{Spec, generate};
+
+    /// Sums of the same sixteen numbers of a chart in another order, each sum rounded as often: 16 ε of their size for
+    /// both ends, and as much for the factors.
+    const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+    #[test]
+    fn angles_between_two_radii_are_the_tables_own() {
+        let table = generate(&Spec::named("draft").unwrap(), &|_, _| ()).unwrap();
+        let lookup = table.lookup();
+        let mut ways = [0; 2];
+        for (from, to) in [
+            (0.03, 0.3),
+            (0.3, 0.1),
+            (0.7, 0.2),
+            (0.9, 0.95),
+            (1e-9, 0.6),
+        ] {
+            let between = lookup.between(from, to);
+            for i in -200..200 {
+                let ray = Ray::new(from, 0.003 * (f64::from(i) + 0.5)).unwrap();
+                let orbit = Orbit::new(ray);
+                let Some(point) = orbit.point_at(to) else {
+                    continue;
+                };
+                let mut agree = |way: usize, got: f64, known: f64| {
+                    ways[way] += 1;
+                    assert!(
+                        (got - known).abs() <= ROUNDING * known.max(1.0),
+                        "{got}, not {known}: {orbit:?} to {to}"
+                    );
+                };
+                let known = lookup.direct(&orbit, orbit.start, point);
+                agree(0, between.direct(&orbit, point), known);
+                if turns(&orbit) {
+                    let known = lookup.around(&orbit, orbit.start, point);
+                    agree(1, between.around(&orbit, point), known);
+                }
+            }
+        }
+        assert!(ways.iter().all(|&count| count > 100), "{ways:?}");
     }
 }

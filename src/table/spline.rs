@@ -114,6 +114,11 @@ impl Scale {
         (cell as usize, t - f64::from(cell))
     }
 
+    /// The cells of two places.
+    pub(crate) fn cells(self, x: (f64, f64)) -> (usize, usize) {
+        (self.cell_and_share(x.0).0, self.cell_and_share(x.1).0)
+    }
+
     /// A place in units of cells from the first node on.
     #[inline(always)]
     fn in_cells<T: Real>(self, x: T) -> T {
@@ -186,6 +191,19 @@ pub(crate) fn bounds(coefficients: &[f64], axis: Scale, x: (f64, f64)) -> (f64, 
     // Each value has some roundings of terms as large as the coefficients, whose weights' sum is 6.
     let size = within.iter().fold(0.0, |size: f64, c| size.max(c.abs()));
     let margin = 6.0 * (bend * t * t / 8.0 + 16.0 * f64::EPSILON * size);
+    (ends.0.min(ends.1) - margin, ends.0.max(ends.1) + margin)
+}
+
+/// Bounds of a spline of one variable within a cell, as [`bounds`] has them.
+#[inline]
+pub(crate) fn cell_bounds(coefficients: &[f64], cell: usize) -> (f64, f64) {
+    let c = &coefficients[cell..cell + 4];
+    let ends = (c[0] + 4.0 * c[1] + c[2], c[1] + 4.0 * c[2] + c[3]);
+    let bend = (c[0] - 2.0 * c[1] + c[2])
+        .abs()
+        .max((c[1] - 2.0 * c[2] + c[3]).abs());
+    let size = (c[0].abs().max(c[1].abs())).max(c[2].abs().max(c[3].abs()));
+    let margin = 6.0 * (bend / 8.0 + 16.0 * f64::EPSILON * size);
     (ends.0.min(ends.1) - margin, ends.0.max(ends.1) + margin)
 }
 
@@ -300,6 +318,30 @@ fn across_rows(
     [low.to_array(), high.to_array()]
 }
 
+/// A spline's value, slope and second derivative in the middle of a cell, for cells as wide as one.
+#[inline]
+pub(crate) fn in_the_middle(coefficients: &[f64], cell: usize) -> (f64, f64, f64) {
+    let c = &coefficients[cell..cell + 4];
+    let (outer, inner) = (c[0] + c[3], c[1] + c[2]);
+    (
+        0.125 * outer + 2.875 * inner,
+        0.75 * (c[3] - c[0]) + 3.75 * (c[2] - c[1]),
+        3.0 * (outer - inner),
+    )
+}
+
+/// A spline's value in the middle of a half of a cell; the halves are counted through.
+#[inline]
+pub(crate) fn in_a_quarter(coefficients: &[f64], half: usize) -> f64 {
+    let c = &coefficients[half / 2..half / 2 + 4];
+    let [near, first, second, far] = weights(0.25);
+    if half.is_multiple_of(2) {
+        (near * c[0] + first * c[1]) + (second * c[2] + far * c[3])
+    } else {
+        (far * c[0] + second * c[1]) + (first * c[2] + near * c[3])
+    }
+}
+
 /// The B-spline coefficients of the spline through `values`, one per node, over 6; `values.len() + 2` of them. (The
 /// weights of [`Scale::stencil`] are six times the B-spline's: it saves each lookup the division.)
 ///
@@ -318,24 +360,36 @@ pub(crate) fn coefficients(values: &[f64]) -> Vec<f64> {
     let mut c = vec![0.0; n + 2];
     c[2] = at_second(core::array::from_fn(|i| values[i]));
     c[n - 1] = at_second(core::array::from_fn(|i| values[n - 1 - i]));
-    let mut pivots = vec![0.0; n];
-    let mut pivot = 0.0;
+    let pivot = |i: usize| PIVOTS[(i - 2).min(PIVOTS.len() - 1)];
     for i in 2..n - 2 {
         // Row i: c_{i−1} + 4c_i + c_{i+1} = 6f_i, what is below the diagonal eliminated.
-        pivot = 1.0 / (4.0 - pivot);
-        pivots[i] = pivot;
         let right = if i == n - 3 { c[n - 1] } else { 0.0 };
-        c[i + 1] = (6.0 * values[i] - c[i] - right) * pivot;
+        c[i + 1] = (6.0 * values[i] - c[i] - right) * pivot(i);
     }
     for i in (2..n - 3).rev() {
-        c[i + 1] -= pivots[i] * c[i + 2];
+        c[i + 1] -= pivot(i) * c[i + 2];
     }
     c[1] = 6.0 * values[1] - 4.0 * c[2] - c[3];
     c[0] = 6.0 * values[0] - 4.0 * c[1] - c[2];
     c[n] = 6.0 * values[n - 2] - 4.0 * c[n - 1] - c[n - 2];
     c[n + 1] = 6.0 * values[n - 1] - 4.0 * c[n] - c[n - 1];
-    c.iter().map(|c| c / 6.0).collect()
+    for c in &mut c {
+        *c /= 6.0;
+    }
+    c
 }
+
+/// The elimination's pivots, `1/(4 − the one before)`, from the first one on: each is 14 times closer to `2 − √3`, and
+/// the last one is it.
+const PIVOTS: [f64; 16] = {
+    let mut pivots = [0.25; 16];
+    let mut i = 1;
+    while i < pivots.len() {
+        pivots[i] = 1.0 / (4.0 - pivots[i - 1]);
+        i += 1;
+    }
+    pivots
+};
 
 /// The same spline on cells half as wide: every other node new, and its value the same everywhere.
 ///
