@@ -100,9 +100,7 @@ impl Picture<'_> {
     ) -> Option<Patch> {
         let (centre, half) = middle(columns, rows);
         let patch = self.patch_about(centre.0, centre.1, half, quarter);
-        // In the disk's plane x is 0 or 1 all over the quarter turn.
-        let little = self.n == 0.0 || patch.least > -0.5 * self.n;
-        (patch.spread <= WIDEST && little).then_some(patch)
+        (patch.sound_beyond(self) == 1).then_some(patch)
     }
 
     /// Where in a rectangle the rays meet the plane at a quarter turn, D = 0: positive in the first one.
@@ -213,6 +211,18 @@ impl<T: Real> Patch<T> {
             return if self.spot.quarter == 0 { narrow } else { 0 };
         }
         narrow & none.less(self.least)
+    }
+
+    /// A bit for each rectangle: whether its bounds are right for those of its rays that are in the quarter turn.
+    #[inline(always)]
+    pub(crate) fn sound_beyond(&self, picture: &Picture<'_>) -> u32 {
+        let widest = self.spread.all(WIDEST * (1.0 + f64::EPSILON));
+        let narrow = self.spread.less(widest);
+        if picture.n == 0.0 {
+            // In the disk's plane x is 0 or 1 all over the quarter turn.
+            return narrow;
+        }
+        narrow & self.spread.all(-0.5 * picture.n).less(self.least)
     }
 
     /// As many zeros as there are rectangles.

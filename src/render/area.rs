@@ -61,25 +61,28 @@ pub(super) fn share_of_union(bands: &[Band], side: f64) -> f64 {
     if count <= 1 || share >= 1.0 {
         return share;
     }
-    let apart = |(i, a): (usize, &Band)| partial[..i].iter().all(|b| are_apart(a, b, side));
-    if partial.iter().enumerate().all(apart) {
+    let is_apart = |(i, a): (usize, &Band)| partial[..i].iter().all(|b| apart(a, b, side) != 0);
+    if partial.iter().enumerate().all(is_apart) {
         return sum;
     }
     (1.0 - off(&Polygon::square(side), partial) / (side * side)).max(0.0)
 }
 
-/// Whether one of two bands' inner edges is so far within the other's outer one, all over a square, that they have
-/// nothing in common: where `g ≤ 0` for the one is `g < 0` for the other.
-fn are_apart(a: &Band, b: &Band, side: f64) -> bool {
-    let within = |inner: &Option<Line>, outer: &Option<Line>| match (inner, outer) {
-        (Some(inner), Some(outer)) => {
-            let reach =
-                (outer.per_column - inner.per_column).abs() + (outer.per_row - inner.per_row).abs();
-            outer.value - inner.value + 0.5 * side * reach <= 0.0
-        }
-        _ => false,
+/// A bit for each pixel: whether two bands have nothing in common in its square, for where `g ≤ 0` at the inner edge of
+/// one is `g < 0` at the other's outer edge.
+#[inline(always)]
+pub(super) fn apart<T: Real>(a: &Band<T>, b: &Band<T>, side: f64) -> u32 {
+    within(&a.inner, &b.outer, side) | within(&b.inner, &a.outer, side)
+}
+
+#[inline(always)]
+fn within<T: Real>(inner: &Option<Line<T>>, outer: &Option<Line<T>>, side: f64) -> u32 {
+    let (Some(inner), Some(outer)) = (inner, outer) else {
+        return 0;
     };
-    within(&a.inner, &b.outer) || within(&b.inner, &a.outer)
+    let reach = (outer.per_column - inner.per_column).abs() + (outer.per_row - inner.per_row).abs();
+    let most = outer.value - inner.value + reach * (0.5 * side);
+    most.less(most.all(0.0))
 }
 
 /// The share of a square of so many pixels' side that is on the positive side of `border` and in any of the bands; with

@@ -11,7 +11,7 @@
 
 use fearless_simd::{Simd, SimdBase, f64x4};
 
-use super::area::{share_beside, share_of_band, share_of_union};
+use super::area::{apart, share_beside, share_of_band, share_of_union};
 use super::group::{Asked, Group};
 use super::tiles::{Kind, Pixels, fill_frame};
 use super::{RenderError, blank};
@@ -153,7 +153,15 @@ fn shares_of_four<S: Simd>(
     );
     let spot = picture.spot(columns, rows, edges.quarter);
     let none = columns.all(0.0);
-    let mut bands = [[Band::default(); MOST_BANDS]; 4];
+    let all = columns.all(1.0);
+    let mut bands = [Band {
+        outer: None,
+        inner: None,
+    }; MOST_BANDS];
+    let mut partial = [0; MOST_BANDS];
+    // As `share_of_union` has it, for all four at once.
+    let (mut most, mut sum, mut count) = (none, none, none);
+    let mut overlap = 0;
     for (index, [outer, inner]) in edges.bands[..edges.count].iter().enumerate() {
         let mut band = Band {
             outer: None,
@@ -165,14 +173,33 @@ fn shares_of_four<S: Simd>(
         if let Some(of) = *inner {
             band.inner = Some(picture.tangent(&spot, of));
         }
-        if edges.count == 1 {
-            return none.larger(share_of_band(&band, 1.0, none)).into();
+        let share = none.larger(share_of_band(&band, 1.0, none));
+        most = most.larger(share);
+        sum = sum + share;
+        count = count + none.if_less(share, all, none);
+        partial[index] = none.less(share);
+        for (before, is_partial) in bands[..index].iter().zip(partial) {
+            let both = partial[index] & is_partial;
+            if both != 0 {
+                overlap |= both & !apart(&band, before, 1.0);
+            }
         }
-        for (i, bands) in bands.iter_mut().enumerate() {
-            bands[index] = band.one(i);
+        bands[index] = band;
+    }
+    overlap &= most.less(all);
+    let mut shares: [f64; 4] = all
+        .if_less(count, most.if_less(all, sum, most), most)
+        .into();
+    for (i, share) in shares.iter_mut().enumerate() {
+        if overlap & (1 << i) != 0 {
+            let mut one = [Band::default(); MOST_BANDS];
+            for (one, band) in one.iter_mut().zip(&bands[..edges.count]) {
+                *one = band.one(i);
+            }
+            *share = share_of_union(&one[..edges.count], 1.0);
         }
     }
-    bands.map(|bands| share_of_union(&bands[..edges.count], 1.0))
+    shares
 }
 
 impl<S: Simd> Band<f64x4<S>> {

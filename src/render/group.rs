@@ -150,7 +150,34 @@ impl Group {
             self.hit |= sifted.hit;
             self.miss |= sifted.miss;
         }
+        if left != 0 && before.is_none() {
+            left &= !self.look_in_both(picture, columns, rows, half, left);
+        }
         self.unknown = left;
+    }
+
+    /// Looks at tiles in both quarter turns: which of them are all alike.
+    #[inline(always)]
+    fn look_in_both<T: Real>(
+        &mut self,
+        picture: &Picture<'_>,
+        columns: T,
+        rows: T,
+        half: [f64; 2],
+        active: u32,
+    ) -> u32 {
+        let (mut hit, mut miss) = (active, active);
+        for quarter in 0..2 {
+            let patch = picture.patch_about(columns, rows, half, quarter);
+            let sound = (hit | miss) & patch.sound_beyond(picture);
+            let curves = picture.curves();
+            let sifted = curves.sift(&patch, sound, Open::all(quarter), &mut Unlisted);
+            hit &= sifted.hit;
+            miss &= sifted.miss;
+        }
+        self.hit |= hit;
+        self.miss |= miss;
+        hit | miss
     }
 
     /// The edges that are open over a tile, which is neither hit nor missed nor unknown.
@@ -233,7 +260,9 @@ impl Group {
                 let white = simd.to_bitmask_mask32x8(simd.simd_ge_f32x8(most, one)) as u32 & bits;
                 let some =
                     simd.to_bitmask_mask32x8(simd.simd_ge_f32x8(most, minus_one)) as u32 & bits;
-                if white != 0 {
+                if let (0xff, Ok(row)) = (bits, <&mut [u8; 8]>::try_from(&mut *row)) {
+                    *row = SPREAD[white as usize];
+                } else if white != 0 {
                     for (pixel, white) in row.iter_mut().zip(SPREAD[white as usize]) {
                         *pixel = white;
                     }
@@ -270,6 +299,14 @@ impl<T: Real + Into<[f64; TILES]>> Listing<T> for Listed<'_, T> {
         };
         self.group.count += 1;
     }
+}
+
+/// Lists no edge.
+struct Unlisted;
+
+impl<T> Listing<T> for Unlisted {
+    #[inline(always)]
+    fn list(&mut self, _: EdgeOf, _: u32, _: &Bent<T>) {}
 }
 
 /// White bytes where a number's bits are set, the lowest one first.
