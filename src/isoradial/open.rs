@@ -114,10 +114,11 @@ impl Isoradials {
             if within == 0 {
                 continue;
             }
+            let about = patch.about(&pieces[piece]);
             let mut outer = None;
             let mut unsure = [0; 2];
             if both & 1 != 0 {
-                let bent = patch.bent(&pieces[piece], Edge::Outer);
+                let bent = patch.bent(&pieces[piece], Edge::Outer, &about);
                 let [least, greatest] = patch.range(&bent);
                 within &= !greatest.less(none);
                 unsure[0] = !none.less(least);
@@ -125,7 +126,7 @@ impl Isoradials {
             }
             let mut inner = None;
             if both & 2 != 0 && within != 0 {
-                let bent = patch.bent(&pieces[piece], Edge::Inner);
+                let bent = patch.bent(&pieces[piece], Edge::Inner, &about);
                 let [least, greatest] = patch.range(&bent);
                 within &= !none.less(least);
                 unsure[1] = !greatest.less(none);

@@ -32,6 +32,7 @@ use super::interval::Interval;
 use super::picture::{Line, Picture, Spot};
 use super::piece::Piece;
 use crate::lanes::Real;
+use crate::table::spline::Cells;
 
 /// The rays of a rectangle of the picture that meet the disk's plane in one and the same quarter turn; or of several
 /// rectangles of the same size, in the same one.
@@ -248,11 +249,17 @@ impl<T: Real> Patch<T> {
         !(greatest.less(least.all(piece.lowest)) | least.all(piece.highest).less(least))
     }
 
-    /// One edge of one piece of [`Self::quarter`], over the patch.
+    /// The cells of a piece of [`Self::quarter`] about the patch.
     #[inline(always)]
-    pub(super) fn bent(&self, piece: &Piece, edge: Edge) -> Bent<T> {
+    pub(super) fn about(&self, piece: &Piece) -> Cells<T> {
+        piece.about(self.spot.x, self.reach)
+    }
+
+    /// One edge of the piece, over the patch.
+    #[inline(always)]
+    pub(super) fn bent(&self, piece: &Piece, edge: Edge, about: &Cells<T>) -> Bent<T> {
         let spot = &self.spot;
-        let jet = piece.jet(edge, spot.x, self.reach);
+        let jet = piece.jet(edge, about);
         let (line, h) = spot.line_of(piece, jet.value, jet.slope);
         if spot.meets_itself(piece) {
             let none = h.all(0.0);
@@ -399,7 +406,7 @@ mod tests {
                 let across = patch.across();
                 for piece in curves.quarter(patch.quarter()) {
                     for edge in [Edge::Inner, Edge::Outer] {
-                        let bent = patch.bent(piece, edge);
+                        let bent = patch.bent(piece, edge, &patch.about(piece));
                         for _ in 0..4 {
                             let (dx, dy) = (random(side) - 0.5 * side, random(side) - 0.5 * side);
                             let at = (left + 0.5 * side + dx, top + 0.5 * side + dy);
@@ -447,7 +454,8 @@ mod tests {
         let off = |side: f64| {
             let patch = picture.patch((1500.0, 1500.0 + side), (400.0, 400.0 + side));
             let patch = patch.unwrap();
-            let bent = patch.bent(&curves.quarter(patch.quarter())[0], Edge::Outer);
+            let piece = &curves.quarter(patch.quarter())[0];
+            let bent = patch.bent(piece, Edge::Outer, &patch.about(piece));
             (patch.doubt(&bent), patch.bend(&bent))
         };
         let (large, small) = (off(16.0), off(8.0));

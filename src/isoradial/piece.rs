@@ -6,7 +6,7 @@ use super::runs::Runs;
 use super::sight::Shown;
 use crate::lanes::Real;
 use crate::table::spline::{
-    Jet, Scale, Stencil, bounds, cell_bounds, jet, thirds, value, value_and_slope,
+    Cells, Jet, Scale, Stencil, bounds, cell_bounds, jet, thirds, value, value_and_slope,
 };
 
 /// A quarter turn of both curves, as splines in x of `h` (or `x h` where h has a pole).
@@ -94,7 +94,7 @@ impl Piece {
     /// h = f/x within `reach` of x, by the mean value theorem: the quotient of two bounds forgets what f and x have in
     /// common.
     fn within(&self, edge: Edge, x: f64, reach: f64) -> (f64, f64) {
-        let jet = self.jet(edge, x, reach);
+        let jet = self.jet(edge, &self.about(x, reach));
         let (h, least) = (jet.value / x, x - reach);
         if least <= 0.0 {
             return (h, f64::INFINITY);
@@ -124,14 +124,20 @@ impl Piece {
         if self.pole { kept / x } else { kept }
     }
 
-    /// One edge's spline about x, as far as `reach`.
+    /// The splines' cells about x, as far as `reach`.
     #[inline(always)]
-    pub(super) fn jet<T: Real>(&self, edge: Edge, x: T, reach: T) -> Jet<T> {
+    pub(super) fn about<T: Real>(&self, x: T, reach: T) -> Cells<T> {
+        self.axis.about(x, reach)
+    }
+
+    /// One edge's spline about there.
+    #[inline(always)]
+    pub(super) fn jet<T: Real>(&self, edge: Edge, about: &Cells<T>) -> Jet<T> {
         let thirds = match edge {
             Edge::Inner => &self.inner_thirds,
             Edge::Outer => &self.outer_thirds,
         };
-        jet(self.spline(edge), thirds, self.axis, x, reach)
+        jet(self.spline(edge), thirds, self.axis, about)
     }
 
     /// Value and slope of one edge's spline at x.

@@ -9,7 +9,7 @@
 //! A pixel over which an edge bends, where the whole ring is some pixels across, is cut into four, and those again
 //! where they must be: so are pixels that look at the hole.
 
-use fearless_simd::{Simd, SimdBase, f64x4};
+use fearless_simd::{Simd, SimdBase, f64x8};
 
 use super::area::{apart, share_beside, share_of_band, share_of_union};
 use super::group::{Asked, Group};
@@ -92,16 +92,12 @@ impl Pixels for Shares<'_> {
         for of in group.edges(tile) {
             edges.push(of);
         }
-        for four in asked.pixels().chunks(4) {
-            let place = |i: usize| four.get(i).copied().unwrap_or(four[0]);
-            let places = [place(0), place(1), place(2), place(3)];
-            let columns = places.map(|(i, _)| (corner.0 + usize::from(i)) as f64 + 0.5);
-            let rows = places.map(|(_, j)| (corner.1 + usize::from(j)) as f64 + 0.5);
-            let shares = dispatch!(level, simd => shares_of_four(simd, &self.picture, &edges, columns, rows));
-            for (&(i, j), share) in four.iter().zip(shares) {
-                pixels[usize::from(j) * stride + usize::from(i)] = byte(share);
-            }
-        }
+        let place = Place {
+            picture: &self.picture,
+            edges: &edges,
+            corner,
+        };
+        dispatch!(level, simd => place.draw(simd, asked.pixels(), pixels, stride));
     }
 }
 
@@ -138,74 +134,96 @@ impl Edges {
     }
 }
 
-/// The shares of four pixels with nothing but `edges` open over them, all of which are straight there.
-#[inline(always)]
-fn shares_of_four<S: Simd>(
-    simd: S,
-    picture: &Picture<'_>,
-    edges: &Edges,
-    columns: [f64; 4],
-    rows: [f64; 4],
-) -> [f64; 4] {
-    let (columns, rows) = (
-        f64x4::from_slice(simd, &columns),
-        f64x4::from_slice(simd, &rows),
-    );
-    let spot = picture.spot(columns, rows, edges.quarter);
-    let none = columns.all(0.0);
-    let all = columns.all(1.0);
-    let mut bands = [Band {
-        outer: None,
-        inner: None,
-    }; MOST_BANDS];
-    let mut partial = [0; MOST_BANDS];
-    // As `share_of_union` has it, for all four at once.
-    let (mut most, mut sum, mut count) = (none, none, none);
-    let mut overlap = 0;
-    for (index, [outer, inner]) in edges.bands[..edges.count].iter().enumerate() {
-        let mut band = Band {
+/// How many pixels stand side by side.
+const PIXELS: usize = 8;
+
+/// A tile with nothing but `edges` open over it, all of which are straight in each of its pixels.
+struct Place<'a> {
+    picture: &'a Picture<'a>,
+    edges: &'a Edges,
+    corner: (usize, usize),
+}
+
+impl Place<'_> {
+    /// Draws some of its pixels.
+    #[inline(always)]
+    fn draw<S: Simd>(&self, simd: S, asked: &[(u8, u8)], pixels: &mut [u8], stride: usize) {
+        for some in asked.chunks(PIXELS) {
+            let (mut columns, mut rows) = ([0.0; PIXELS], [0.0; PIXELS]);
+            for i in 0..PIXELS {
+                // As many as there are, the last one over and over.
+                let (column, row) = some[i.min(some.len() - 1)];
+                columns[i] = (self.corner.0 + usize::from(column)) as f64 + 0.5;
+                rows[i] = (self.corner.1 + usize::from(row)) as f64 + 0.5;
+            }
+            let shares = self.shares(
+                f64x8::from_slice(simd, &columns),
+                f64x8::from_slice(simd, &rows),
+            );
+            for (&(i, j), share) in some.iter().zip(shares) {
+                pixels[usize::from(j) * stride + usize::from(i)] = byte(share);
+            }
+        }
+    }
+
+    /// The shares of pixels: as [`share_of_union`] has it, for all at once.
+    #[inline(always)]
+    fn shares<S: Simd>(&self, columns: f64x8<S>, rows: f64x8<S>) -> [f64; PIXELS] {
+        let spot = self.picture.spot(columns, rows, self.edges.quarter);
+        let (none, all) = (columns.all(0.0), columns.all(1.0));
+        let empty = Band {
             outer: None,
             inner: None,
         };
-        if let Some(of) = *outer {
-            band.outer = Some(picture.tangent(&spot, of));
+        let mut bands = [empty; MOST_BANDS];
+        let mut partial = [0; MOST_BANDS];
+        let (mut most, mut sum, mut count) = (none, none, none);
+        let mut overlap = 0;
+        let edges = &self.edges.bands[..self.edges.count];
+        for (index, [outer, inner]) in edges.iter().enumerate() {
+            let mut band = empty;
+            if let Some(of) = *outer {
+                band.outer = Some(self.picture.tangent(&spot, of));
+            }
+            if let Some(of) = *inner {
+                band.inner = Some(self.picture.tangent(&spot, of));
+            }
+            let share = none.larger(share_of_band(&band, 1.0, none));
+            if edges.len() == 1 {
+                return share.into();
+            }
+            most = most.larger(share);
+            sum = sum + share;
+            count = count + none.if_less(share, all, none);
+            partial[index] = none.less(share);
+            for (before, is_partial) in bands[..index].iter().zip(partial) {
+                let both = partial[index] & is_partial;
+                if both != 0 {
+                    overlap |= both & !apart(&band, before, 1.0);
+                }
+            }
+            bands[index] = band;
         }
-        if let Some(of) = *inner {
-            band.inner = Some(picture.tangent(&spot, of));
-        }
-        let share = none.larger(share_of_band(&band, 1.0, none));
-        most = most.larger(share);
-        sum = sum + share;
-        count = count + none.if_less(share, all, none);
-        partial[index] = none.less(share);
-        for (before, is_partial) in bands[..index].iter().zip(partial) {
-            let both = partial[index] & is_partial;
-            if both != 0 {
-                overlap |= both & !apart(&band, before, 1.0);
+        overlap &= most.less(all);
+        let several = all.if_less(count, most.if_less(all, sum, most), most);
+        let mut shares: [f64; PIXELS] = several.into();
+        for (i, share) in shares.iter_mut().enumerate() {
+            if overlap & (1 << i) != 0 {
+                let mut one = [Band::default(); MOST_BANDS];
+                for (one, band) in one.iter_mut().zip(&bands[..edges.len()]) {
+                    *one = band.one(i);
+                }
+                *share = share_of_union(&one[..edges.len()], 1.0);
             }
         }
-        bands[index] = band;
+        shares
     }
-    overlap &= most.less(all);
-    let mut shares: [f64; 4] = all
-        .if_less(count, most.if_less(all, sum, most), most)
-        .into();
-    for (i, share) in shares.iter_mut().enumerate() {
-        if overlap & (1 << i) != 0 {
-            let mut one = [Band::default(); MOST_BANDS];
-            for (one, band) in one.iter_mut().zip(&bands[..edges.count]) {
-                *one = band.one(i);
-            }
-            *share = share_of_union(&one[..edges.count], 1.0);
-        }
-    }
-    shares
 }
 
-impl<S: Simd> Band<f64x4<S>> {
-    /// That of one of four pixels.
+impl<S: Simd> Band<f64x8<S>> {
+    /// That of one of the pixels.
     fn one(&self, i: usize) -> Band {
-        let one = |line: &Line<f64x4<S>>| Line {
+        let one = |line: &Line<f64x8<S>>| Line {
             value: line.value[i],
             per_column: line.per_column[i],
             per_row: line.per_row[i],

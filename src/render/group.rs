@@ -10,7 +10,7 @@ use fearless_simd::{Simd, SimdBase, f32x8, f64x4};
 
 use super::coverage::STRAIGHT;
 use super::mask::WHITE;
-use super::tiles::Kind;
+use super::tiles::{Kind, TILE};
 use crate::isoradial::{Bent, Edge, EdgeOf, Listing, MOST_EDGES, Open, Patch, Picture};
 use crate::lanes::{Level, Real, dispatch};
 
@@ -40,7 +40,9 @@ struct GroupEdge {
     of: EdgeOf,
     quarter: usize,
     tiles: u32,
-    quadratics: [Quadratic; TILES],
+    /// Value, slopes along columns and rows, and what goes with the columns' square, with both, with the rows' square:
+    /// each for every tile.
+    quadratics: [[f64; TILES]; 6],
 }
 
 /// An edge over a tile, as a multiple of what it may be off by: positive within its band.
@@ -54,18 +56,36 @@ struct Quadratic {
     rows: f32,
 }
 
+impl Quadratic {
+    fn of(edge: &GroupEdge, tile: usize) -> Self {
+        let [value, per_column, per_row, columns, both, rows] =
+            edge.quadratics.map(|four| four[tile] as f32);
+        Self {
+            value,
+            per_column,
+            per_row,
+            columns,
+            both,
+            rows,
+        }
+    }
+}
+
 /// The pixels of a tile that are to be asked, each its column and its row in the tile.
 #[derive(Debug)]
 pub(super) struct Asked {
-    pixels: [(u8, u8); super::tiles::TILE * super::tiles::TILE],
+    pixels: [(u8, u8); TILE * TILE],
     count: usize,
+    /// The tile's edges, each with whether it is another piece's than the one before.
+    edges: [(bool, Quadratic); MOST_EDGES],
 }
 
 impl Asked {
     pub(super) fn new() -> Self {
         Self {
-            pixels: [(0, 0); super::tiles::TILE * super::tiles::TILE],
+            pixels: [(0, 0); TILE * TILE],
             count: 0,
+            edges: [(false, Quadratic::default()); MOST_EDGES],
         }
     }
 
@@ -83,7 +103,7 @@ impl Group {
             },
             quarter: 0,
             tiles: 0,
-            quadratics: [Quadratic::default(); TILES],
+            quadratics: [[0.0; TILES]; 6],
         };
         Self {
             hit: 0,
@@ -222,11 +242,15 @@ impl Group {
         (width, height): (usize, usize),
         asked: &mut Asked,
     ) {
-        let mut edges = [(true, Quadratic::default()); MOST_EDGES];
+        let Asked {
+            pixels: along,
+            count: found,
+            edges,
+        } = asked;
         let mut count = 0;
         let mut last = None;
         for edge in self.edges_of(tile) {
-            edges[count] = (last != Some(edge.of.piece), edge.quadratics[tile]);
+            edges[count] = (last != Some(edge.of.piece), Quadratic::of(edge, tile));
             last = Some(edge.of.piece);
             count += 1;
         }
@@ -234,7 +258,7 @@ impl Group {
         let half = self.half.map(|half| half as f32);
         let steps = f32x8::from_slice(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
         let (one, minus_one) = (f32x8::splat(simd, 1.0), f32x8::splat(simd, -1.0));
-        asked.count = 0;
+        *found = 0;
         for j in 0..height {
             let dy = j as f32 + 0.5 - half[1];
             let row = &mut pixels[j * stride..][..width];
@@ -271,8 +295,8 @@ impl Group {
                 while unsure != 0 {
                     let i = unsure.trailing_zeros();
                     unsure &= unsure - 1;
-                    asked.pixels[asked.count] = ((first as u32 + i) as u8, j as u8);
-                    asked.count += 1;
+                    along[*found] = ((first as u32 + i) as u8, j as u8);
+                    *found += 1;
                 }
             }
         }
@@ -333,7 +357,7 @@ fn quadratics<T: Real + Into<[f64; TILES]>>(
     bent: &Bent<T>,
     edge: Edge,
     kind: Kind,
-) -> ([Quadratic; TILES], u32) {
+) -> ([[f64; TILES]; 6], u32) {
     /// Of what an edge may be off its tangent in a pixel by the pixel's own bounds. A tile's are wider than these.
     const SURELY_STRAIGHT: f64 = 0.9 * STRAIGHT;
     /// The share of its terms by which a quadratic is off in single precision: its nine roundings, with room.
@@ -355,7 +379,7 @@ fn quadratics<T: Real + Into<[f64; TILES]>>(
     let sign = if edge == Edge::Outer { 1.0 } else { -1.0 };
     let unit = steep.all(sign) / (off + seen + terms * ROUNDING);
     let bend = unit * bent.bend.middle;
-    let quadratics: [[f64; TILES]; 6] = [
+    let quadratics = [
         (unit * line.value).into(),
         (unit * line.per_column).into(),
         (unit * line.per_row).into(),
@@ -363,16 +387,5 @@ fn quadratics<T: Real + Into<[f64; TILES]>>(
         (-(bend * right * down)).into(),
         (bend * down * down * -0.5).into(),
     ];
-    let mut tiles = [Quadratic::default(); TILES];
-    for (i, tile) in tiles.iter_mut().enumerate() {
-        *tile = Quadratic {
-            value: quadratics[0][i] as f32,
-            per_column: quadratics[1][i] as f32,
-            per_row: quadratics[2][i] as f32,
-            columns: quadratics[3][i] as f32,
-            both: quadratics[4][i] as f32,
-            rows: quadratics[5][i] as f32,
-        };
-    }
-    (tiles, good)
+    (quadratics, good)
 }

@@ -239,31 +239,54 @@ fn within_cell<T: Real>(axis: Scale, f: T, [c0, c1, c2, c3]: [T; 4]) -> [T; 2] {
     [value, slope * (3.0 * axis.per_unit)]
 }
 
-/// A spline about x, as far as `reach`. Its third derivative is constant in each cell, of those that `thirds` is the list
-/// of.
+/// The cells of an axis about a place.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cells<T: Real> {
+    /// Its own.
+    cell: T::Indices,
+    /// How much of it lies before the place.
+    share: T,
+    /// The first and the last one near by.
+    first: T::Indices,
+    last: T::Indices,
+}
+
+impl Scale {
+    /// The cells about x, as far as `reach`.
+    #[inline(always)]
+    pub(crate) fn about<T: Real>(self, x: T, reach: T) -> Cells<T> {
+        let (t, reach) = (self.in_cells(x), reach * self.per_unit);
+        let (cell, share) = self.cells_and_shares(t);
+        let (first, _) = self.cells_and_shares(t - reach);
+        let (last, _) = self.cells_and_shares(t + reach);
+        Cells {
+            cell,
+            share,
+            first,
+            last,
+        }
+    }
+}
+
+/// A spline about a place. Its third derivative is constant in each cell, of those that `thirds` is the list of.
 #[inline(always)]
 pub(crate) fn jet<T: Real>(
     coefficients: &[f64],
     thirds: &[f64],
     axis: Scale,
-    x: T,
-    reach: T,
+    about: &Cells<T>,
 ) -> Jet<T> {
-    let t = axis.in_cells(x);
-    let (cell, share) = axis.cells_and_shares(t);
-    let c = x.from_each(coefficients, cell);
+    let share = about.share;
+    let c = share.from_each(coefficients, about.cell);
     let [value, slope] = within_cell(axis, share, c);
     let [c0, c1, c2, c3] = c;
     let (first, second) = (c0 - c1 * 2.0 + c2, c1 - c2 * 2.0 + c3);
     let bend = (-(share - 1.0) * first + share * second) * (6.0 * axis.per_unit * axis.per_unit);
-    let reach = reach * axis.per_unit;
-    let (low, _) = axis.cells_and_shares(t - reach);
-    let (high, _) = axis.cells_and_shares(t + reach);
     Jet {
         value,
         slope,
         bend,
-        third: x.range_of(thirds, low, high),
+        third: share.range_of(thirds, about.first, about.last),
     }
 }
 
@@ -464,7 +487,7 @@ mod tests {
         let at = |x: f64| value(&c, &axis.stencil(x));
         for k in 2..58 {
             let x = -1.0 + f64::from(k) * 0.05 + 0.01;
-            let jet = jet(&c, &thirds(&c, axis), axis, x, 0.071);
+            let jet = jet(&c, &thirds(&c, axis), axis, &axis.about(x, 0.071));
             assert_eq!(jet.value, at(x));
             let (before, after) = (at(x - 1e-4), at(x + 1e-4));
             assert!(
