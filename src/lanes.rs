@@ -5,7 +5,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::OnceLock;
 
 pub(crate) use fearless_simd::{Level, dispatch};
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f64x4, f64x8};
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f64x4};
 
 /// One real number, or several of them.
 pub(crate) trait Real:
@@ -39,7 +39,7 @@ pub(crate) trait Real:
     fn rounded(self, last: i32) -> (Self::Indices, Self);
 
     /// What stands in a list from each index on.
-    fn from_each(self, list: &[f64], first: Self::Indices) -> [Self; 4];
+    fn neighbours(self, list: &[f64], first: Self::Indices) -> [Self; 4];
 
     /// The least and the greatest in a list from each of one index to each of another one.
     fn range_of(self, list: &[f64], first: Self::Indices, last: Self::Indices) -> [Self; 2];
@@ -88,11 +88,11 @@ impl Real for f64 {
     #[inline(always)]
     fn rounded(self, last: i32) -> ([usize; 1], Self) {
         let index = rounded(self, last);
-        ([index], index as f64)
+        ([index as usize], f64::from(index))
     }
 
     #[inline(always)]
-    fn from_each(self, list: &[f64], [first]: [usize; 1]) -> [Self; 4] {
+    fn neighbours(self, list: &[f64], [first]: [usize; 1]) -> [Self; 4] {
         let four = &list[first..first + 4];
         [four[0], four[1], four[2], four[3]]
     }
@@ -103,88 +103,48 @@ impl Real for f64 {
     }
 }
 
-/// The same for a vector of so many lanes, but for what reads lists.
-macro_rules! side_by_side {
-    ($vector:ident, $lanes:literal, $abs:ident) => {
-        impl<S: Simd> Real for $vector<S> {
-            #[inline(always)]
-            fn all(self, value: f64) -> Self {
-                Self::splat(self.simd, value)
-            }
-
-            #[inline(always)]
-            fn sqrt(self) -> Self {
-                SimdFloat::sqrt(self)
-            }
-
-            #[inline(always)]
-            fn abs(self) -> Self {
-                self.simd.$abs(self)
-            }
-
-            #[inline(always)]
-            fn if_less(self, other: Self, then: Self, otherwise: Self) -> Self {
-                self.simd_lt(other).select(then, otherwise)
-            }
-
-            #[inline(always)]
-            fn less(self, other: Self) -> u32 {
-                self.simd_lt(other).to_bitmask() as u32
-            }
-
-            type Indices = [usize; $lanes];
-
-            #[inline(always)]
-            fn rounded(self, last: i32) -> ([usize; $lanes], Self) {
-                let (none, last) = (self.all(0.0), self.all(f64::from(last)));
-                let number = (self + ROUNDER) - ROUNDER;
-                // Not a number is the first one.
-                let number = none.if_less(number, number, none);
-                let number = number.if_less(last, number, last);
-                let sums: [f64; $lanes] = (number + ROUNDER).into();
-                let mut indices = [0; $lanes];
-                for (index, sum) in indices.iter_mut().zip(sums) {
-                    *index = sum.to_bits() as u32 as usize;
-                }
-                (indices, number)
-            }
-
-            #[inline(always)]
-            fn from_each(self, list: &[f64], first: [usize; $lanes]) -> [Self; 4] {
-                $vector::transposed(self.simd, list, first)
-            }
-
-            #[inline(always)]
-            fn range_of(
-                self,
-                list: &[f64],
-                first: [usize; $lanes],
-                last: [usize; $lanes],
-            ) -> [Self; 2] {
-                let (mut least, mut greatest) = ([0.0; $lanes], [0.0; $lanes]);
-                for i in 0..$lanes {
-                    [least[i], greatest[i]] = range_of(list, first[i], last[i]);
-                }
-                [
-                    Self::from_slice(self.simd, &least),
-                    Self::from_slice(self.simd, &greatest),
-                ]
-            }
-        }
-    };
-}
-
-side_by_side!(f64x4, 4, abs_f64x4);
-side_by_side!(f64x8, 8, abs_f64x8);
-
-/// Four neighbours in a list from each index on: all first ones, all second ones, and so on.
-trait Transposed<S, const N: usize>: Sized {
-    fn transposed(simd: S, list: &[f64], first: [usize; N]) -> [Self; 4];
-}
-
-impl<S: Simd> Transposed<S, 4> for f64x4<S> {
+impl<S: Simd> Real for f64x4<S> {
     #[inline(always)]
-    fn transposed(simd: S, list: &[f64], [a, b, c, d]: [usize; 4]) -> [Self; 4] {
+    fn all(self, value: f64) -> Self {
+        Self::splat(self.simd, value)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        SimdFloat::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.simd.abs_f64x4(self)
+    }
+
+    #[inline(always)]
+    fn if_less(self, other: Self, then: Self, otherwise: Self) -> Self {
+        self.simd_lt(other).select(then, otherwise)
+    }
+
+    #[inline(always)]
+    fn less(self, other: Self) -> u32 {
+        self.simd_lt(other).to_bitmask() as u32
+    }
+
+    type Indices = [usize; 4];
+
+    #[inline(always)]
+    fn rounded(self, last: i32) -> ([usize; 4], Self) {
+        let (none, last) = (self.all(0.0), self.all(f64::from(last)));
+        let number = (self + ROUNDER) - ROUNDER;
+        // Not a number is the first one.
+        let number = none.if_less(number, number, none);
+        let number = number.if_less(last, number, last);
+        let sums: [f64; 4] = (number + ROUNDER).into();
+        (sums.map(|sum| sum.to_bits() as u32 as usize), number)
+    }
+
+    #[inline(always)]
+    fn neighbours(self, list: &[f64], [a, b, c, d]: [usize; 4]) -> [Self; 4] {
+        let simd = self.simd;
         let (a, b, c, d) = (
             Self::from_slice(simd, &list[a..a + 4]),
             Self::from_slice(simd, &list[b..b + 4]),
@@ -200,19 +160,18 @@ impl<S: Simd> Transposed<S, 4> for f64x4<S> {
             simd.zip_high_f64x4(ac_high, bd_high),
         ]
     }
-}
 
-impl<S: Simd> Transposed<S, 8> for f64x8<S> {
     #[inline(always)]
-    fn transposed(simd: S, list: &[f64], first: [usize; 8]) -> [Self; 4] {
-        let [a, b, c, d, e, f, g, h] = first;
-        let [a0, a1, a2, a3] = f64x4::transposed(simd, list, [a, b, c, d]);
-        let [b0, b1, b2, b3] = f64x4::transposed(simd, list, [e, f, g, h]);
+    fn range_of(self, list: &[f64], first: [usize; 4], last: [usize; 4]) -> [Self; 2] {
+        let [a, b, c, d] = [
+            range_of(list, first[0], last[0]),
+            range_of(list, first[1], last[1]),
+            range_of(list, first[2], last[2]),
+            range_of(list, first[3], last[3]),
+        ];
         [
-            simd.combine_f64x4(a0, b0),
-            simd.combine_f64x4(a1, b1),
-            simd.combine_f64x4(a2, b2),
-            simd.combine_f64x4(a3, b3),
+            Self::from_slice(self.simd, &[a[0], b[0], c[0], d[0]]),
+            Self::from_slice(self.simd, &[a[1], b[1], c[1], d[1]]),
         ]
     }
 }
@@ -222,21 +181,25 @@ const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
 /// Whatever the bits hold for what is no such integer, the index is none below 0 or above `last`.
 #[inline(always)]
-pub(crate) fn rounded(number: f64, last: i32) -> usize {
-    ((number + ROUNDER).to_bits() as i32).max(0).min(last) as usize
+pub(crate) fn rounded(number: f64, last: i32) -> u32 {
+    ((number + ROUNDER).to_bits() as i32).max(0).min(last) as u32
 }
 
-#[inline(always)]
 fn range_of(list: &[f64], first: usize, last: usize) -> [f64; 2] {
     let (mut least, mut greatest) = (list[first], list[first]);
     for &number in &list[first..=last] {
-        (least, greatest) = (least.min(number), greatest.max(number));
+        if number < least {
+            least = number;
+        }
+        if number > greatest {
+            greatest = number;
+        }
     }
     [least, greatest]
 }
 
 /// The instruction sets that `DARKNESS_SIMD` may name.
-const NAMES: [&str; 4] = ["scalar", "sse4.2", "avx2", "avx512"];
+pub(crate) const NAMES: [&str; 4] = ["scalar", "sse4.2", "avx2", "avx512"];
 
 /// The best instruction set of this machine, or the best of those that the environment variable `DARKNESS_SIMD` does
 /// not exclude: `scalar`, `sse4.2`, `avx2` or `avx512`.
@@ -271,14 +234,11 @@ fn capped(name: &str) -> Level {
 /// Whether `DARKNESS_SIMD` is one of the names there are, or not set.
 ///
 /// # Errors
-/// What it is, and the names.
-pub fn check_environment() -> Result<(), String> {
+/// What it is.
+pub(crate) fn check_environment() -> Result<(), String> {
     match std::env::var("DARKNESS_SIMD") {
-        Ok(name) if !NAMES.contains(&name.as_str()) => Err(format!(
-            "DARKNESS_SIMD is `{name}`: set it to {} or {}, or not at all",
-            NAMES[..3].join(", "),
-            NAMES[3]
-        )),
+        Ok(name) if !NAMES.contains(&name.as_str()) => Err(name),
+        Err(std::env::VarError::NotUnicode(name)) => Err(name.to_string_lossy().into_owned()),
         _ => Ok(()),
     }
 }

@@ -85,6 +85,11 @@ enum Misuse {
         height: u32,
         source: crate::scene::SceneError,
     },
+    #[error(
+        "DARKNESS_SIMD is `{name}`: the instruction sets that it may name are {}; set it to one of these, or not at all",
+        crate::lanes::NAMES.join(", ")
+    )]
+    InstructionSet { name: String },
     #[error("{0}")]
     Tolerance(#[source] crate::scene::SceneError),
     #[error("--{flag} is about isoradial curves, which only --method table draws")]
@@ -142,14 +147,16 @@ pub fn run() -> ExitCode {
         }
     };
     let report = Report::new(cli.quiet);
-    let done = match cli.verb {
+    let run = || match cli.verb {
         Verb::Render(args) => render::run(&args, report),
         Verb::Table(args) => table::run(&args, report),
         Verb::Trace(args) => trace::run(&args, report),
         Verb::Scene(args) => scene::run(&args),
         Verb::Chart(args) => chart::run(&args, report),
     };
-    match done {
+    let checked = crate::lanes::check_environment()
+        .map_err(|name| anyhow::Error::new(Misuse::InstructionSet { name }));
+    match checked.and_then(|()| run()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error)
             if error

@@ -4,11 +4,11 @@ use crate::lanes::Real;
 
 /// The numbers within `radius` of `middle`.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Interval<T = f64> {
+pub(crate) struct Interval<T = f64> {
     /// Its middle.
-    pub middle: T,
+    pub(crate) middle: T,
     /// Half its width.
-    pub radius: T,
+    pub(crate) radius: T,
 }
 
 impl<T: Real> Interval<T> {

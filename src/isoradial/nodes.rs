@@ -281,11 +281,6 @@ impl Nodes {
         }
     }
 
-    /// Of all nodes.
-    pub(super) fn heights(&self) -> impl Iterator<Item = f64> {
-        (0..self.count()).map(|i| self.height(i))
-    }
-
     pub(super) fn axis(&self) -> Axis {
         Axis {
             start: self.quarter.x.0,

@@ -1,4 +1,4 @@
-//! Curves over a small rectangle of the picture: quadratic in its pixels, with a bound on what is not.
+//! Curves over a small rectangle of the picture: cubics in its pixels, with a bound on what is not.
 //!
 //! # Derivation
 //! `g = z − s K(θ)`, see [the page before](super::picture). z has no second derivative, and s K(θ), of the first degree
@@ -10,9 +10,18 @@
 //! g(d) = g₀ + ∂g·d − ∫₀¹ (1 − τ) B(τ) dτ (s∂θ·d)²          B = (K + K_θθ) s₀²/s³
 //! ```
 //!
-//! s∂θ being that of the centre. If `B` is within ρ of β all over the rectangle, then g is its quadratic part with β/2 in
-//! the integral's place, and what is left is less than `ρ/2 (s∂θ·d)²`: it falls with the cube of the rectangle's size.
-//! The gradient's own change is `−∫₀¹ B (s∂θ·d)(s∂θ + τ d × ∂p/s₀) dτ`.
+//! s∂θ being that of the centre: with bounds of B over the rectangle, there are bounds of g. The gradient's own change is
+//! `−∫₀¹ B (s∂θ·d)(s∂θ + τ d × ∂p/s₀) dτ`.
+//!
+//! The same seen along a line across: where `a = s₀ + ∂s·d`, `b = s∂θ·d` and `T = b/a`, `s K = a G(T)` with `G(0) = K`,
+//! `G′(0) = K_θ` and `G″ = (K + K_θθ)(1 + T²)^{−3/2}`, so that
+//!
+//! ```text
+//! g(d) = g₀ + ∂g·d − ½ (K + K_θθ) b²/a        but for  ½ (b²/a) (|K_θ + K_θθθ| |Δθ| + 3/2 T² |K + K_θθ|)
+//! ```
+//!
+//! and, `1/a` being `(1 − ∂s·d/s₀)/s₀` but for the share `r²/(1 − r)` of it, a cubic in d that is right to `½ ε b²`,
+//! `s₀ ε = 4/3 |K_θ + K_θθθ| |Δθ| + 5 r² |K + K_θθ|`.
 //!
 //! With `x̂` and v of the page before, and `b = x̂ (2v² + 1 − x̂)`, plus in the first quarter turn, minus in the
 //! second:
@@ -65,7 +74,7 @@ pub(crate) struct Patch<T = f64> {
     turn: Interval<T>,
 }
 
-/// One edge over a patch: `line` with `−½ bend (s∂θ·d)²` for its quadratic part, and what is not quadratic.
+/// One edge over a patch: `line` with the cubic `−½ bend (s∂θ·d)² (1 − ∂s·d/s)`, and what is neither.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Bent<T = f64> {
     /// At the centre.
@@ -74,6 +83,8 @@ pub(crate) struct Bent<T = f64> {
     rounding: T,
     /// B.
     pub(crate) bend: Interval<T>,
+    /// ε.
+    rest: T,
 }
 
 /// Share of its terms by which a value may be off through rounding: some ε of each, with room.
@@ -237,6 +248,12 @@ impl<T: Real> Patch<T> {
         self.spot.across
     }
 
+    /// ∂s/s at the centre.
+    pub(crate) fn along(&self) -> [T; 2] {
+        let [right, down] = self.spot.along;
+        [right * self.spot.inverse, down * self.spot.inverse]
+    }
+
     /// Pixels from the centre to the sides.
     pub(crate) fn half(&self) -> [f64; 2] {
         self.half
@@ -270,6 +287,7 @@ impl<T: Real> Patch<T> {
                     middle: none,
                     radius: none,
                 },
+                rest: none,
             };
         }
         let third = Interval::between(jet.third);
@@ -298,14 +316,16 @@ impl<T: Real> Patch<T> {
             (middle, first.plus(second).plus(last))
         };
         let middle = middle + spot.critical;
-        let change = rate.most() * self.reach + (middle.abs() + spot.critical.abs()) * ROUNDING;
+        let (size, r) = (middle.abs(), self.spread);
+        let change = rate.most() * self.reach + (size + spot.critical.abs()) * ROUNDING;
         Bent {
             line,
             rounding: self.rounding + self.s_most * h.abs() * ROUNDING,
             bend: Interval {
                 middle: middle * spot.inverse,
-                radius: spot.inverse * (change * (self.nearer + 1.0) + middle.abs() * self.nearer),
+                radius: spot.inverse * (change * (self.nearer + 1.0) + size * self.nearer),
             },
+            rest: spot.inverse * (change * (4.0 / 3.0) + size * r * r * 5.0),
         }
     }
 
@@ -334,10 +354,10 @@ impl<T: Real> Patch<T> {
         bent.bend.most() * self.half_square() + bent.rounding
     }
 
-    /// What of an edge over the patch is not quadratic, at most.
+    /// What of an edge over the patch is not its cubic, at most.
     #[inline(always)]
     pub(crate) fn doubt(&self, bent: &Bent<T>) -> T {
-        bent.bend.radius * self.half_square() + bent.rounding
+        bent.rest * self.half_square() + bent.rounding
     }
 
     /// By how much each part of an edge's gradient is another than in the centre, at most.
@@ -422,7 +442,20 @@ mod tests {
                                 "{}: {truth} at {at:?}, not {middle} ± {radius}: {bent:?}",
                                 builtin.name()
                             );
-                            assert!(radius <= patch.doubt(&bent) || radius.is_nan());
+                            let [right, down] = patch.along();
+                            let cubic = line.value + line.per_column * dx + line.per_row * dy
+                                - 0.5
+                                    * bent.bend.middle
+                                    * turned
+                                    * turned
+                                    * (1.0 - right * dx - down * dy);
+                            let rest = 0.5 * bent.rest * turned * turned + bent.rounding;
+                            assert!(
+                                (truth - cubic).abs() <= rest || truth == cubic || rest.is_nan(),
+                                "{}: {truth} at {at:?}, not {cubic} ± {rest}: {bent:?}",
+                                builtin.name()
+                            );
+                            assert!(rest <= patch.doubt(&bent) || rest.is_nan());
                             let there = picture.spot(at.0, at.1, patch.quarter());
                             let there = there.line(piece, edge);
                             let [columns, rows] = patch.turning(&bent);

@@ -23,7 +23,7 @@ use crate::scene::{Affine, View};
 
 /// The rays of a picture, in pixels from its left and its top.
 #[derive(Debug, Clone, Copy)]
-pub struct Picture<'a> {
+pub(crate) struct Picture<'a> {
     pub(super) curves: &'a Isoradials,
     view: &'a View,
     /// `|n·p̂|`.
@@ -63,7 +63,7 @@ pub(crate) struct Spot<T = f64> {
     /// v.
     pub(super) turn: T,
     /// `∂s`, for each pixel to the right and downwards.
-    along: [T; 2],
+    pub(super) along: [T; 2],
     /// `s∂θ`.
     pub(super) across: [T; 2],
     pub(super) critical: f64,
@@ -72,18 +72,18 @@ pub(crate) struct Spot<T = f64> {
 
 /// `g` of one edge about a place: its value there, and its gradient.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Line<T = f64> {
+pub(crate) struct Line<T = f64> {
     /// At the place.
-    pub value: T,
+    pub(crate) value: T,
     /// For each pixel to the right.
-    pub per_column: T,
+    pub(crate) per_column: T,
     /// For each pixel downwards.
-    pub per_row: T,
+    pub(crate) per_row: T,
 }
 
 impl<'a> Picture<'a> {
     /// The rays of a view that the curves were drawn for.
-    pub fn new(view: &'a View, curves: &'a Isoradials) -> Self {
+    pub(crate) fn new(view: &'a View, curves: &'a Isoradials) -> Self {
         let pixel = view.pixel_side();
         let (z, ta, tb) = (view.z(), view.ta(), view.tb());
         Self {
@@ -108,12 +108,12 @@ impl<'a> Picture<'a> {
     }
 
     /// The curves.
-    pub fn curves(&self) -> &'a Isoradials {
+    pub(crate) fn curves(&self) -> &'a Isoradials {
         self.curves
     }
 
     /// The view.
-    pub fn view(&self) -> &'a View {
+    pub(crate) fn view(&self) -> &'a View {
         self.view
     }
 
@@ -223,7 +223,7 @@ impl<T: Real> Spot<T> {
 impl Line {
     /// `−g`.
     #[must_use]
-    pub fn opposite(&self) -> Self {
+    pub(crate) fn opposite(&self) -> Self {
         Self {
             value: -self.value,
             per_column: -self.per_column,

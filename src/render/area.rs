@@ -72,11 +72,11 @@ pub(super) fn share_of_union(bands: &[Band], side: f64) -> f64 {
 /// one is `g < 0` at the other's outer edge.
 #[inline(always)]
 pub(super) fn apart<T: Real>(a: &Band<T>, b: &Band<T>, side: f64) -> u32 {
-    within(&a.inner, &b.outer, side) | within(&b.inner, &a.outer, side)
+    within(a.inner, b.outer, side) | within(b.inner, a.outer, side)
 }
 
 #[inline(always)]
-fn within<T: Real>(inner: &Option<Line<T>>, outer: &Option<Line<T>>, side: f64) -> u32 {
+fn within<T: Real>(inner: Option<Line<T>>, outer: Option<Line<T>>, side: f64) -> u32 {
     let (Some(inner), Some(outer)) = (inner, outer) else {
         return 0;
     };

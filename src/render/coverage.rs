@@ -9,7 +9,7 @@
 //! A pixel over which an edge bends, where the whole ring is some pixels across, is cut into four, and those again
 //! where they must be: so are pixels that look at the hole.
 
-use fearless_simd::{Simd, SimdBase, f64x8};
+use fearless_simd::{Simd, SimdBase, f64x4};
 
 use super::area::{apart, share_beside, share_of_band, share_of_union};
 use super::group::{Asked, Group};
@@ -135,7 +135,7 @@ impl Edges {
 }
 
 /// How many pixels stand side by side.
-const PIXELS: usize = 8;
+const PIXELS: usize = 4;
 
 /// A tile with nothing but `edges` open over it, all of which are straight in each of its pixels.
 struct Place<'a> {
@@ -157,8 +157,8 @@ impl Place<'_> {
                 rows[i] = (self.corner.1 + usize::from(row)) as f64 + 0.5;
             }
             let shares = self.shares(
-                f64x8::from_slice(simd, &columns),
-                f64x8::from_slice(simd, &rows),
+                f64x4::from_slice(simd, &columns),
+                f64x4::from_slice(simd, &rows),
             );
             for (&(i, j), share) in some.iter().zip(shares) {
                 pixels[usize::from(j) * stride + usize::from(i)] = byte(share);
@@ -168,7 +168,7 @@ impl Place<'_> {
 
     /// The shares of pixels: as [`share_of_union`] has it, for all at once.
     #[inline(always)]
-    fn shares<S: Simd>(&self, columns: f64x8<S>, rows: f64x8<S>) -> [f64; PIXELS] {
+    fn shares<S: Simd>(&self, columns: f64x4<S>, rows: f64x4<S>) -> [f64; PIXELS] {
         let spot = self.picture.spot(columns, rows, self.edges.quarter);
         let (none, all) = (columns.all(0.0), columns.all(1.0));
         let empty = Band {
@@ -193,8 +193,8 @@ impl Place<'_> {
                 return share.into();
             }
             most = most.larger(share);
-            sum = sum + share;
-            count = count + none.if_less(share, all, none);
+            sum += share;
+            count += none.if_less(share, all, none);
             partial[index] = none.less(share);
             for (before, is_partial) in bands[..index].iter().zip(partial) {
                 let both = partial[index] & is_partial;
@@ -220,10 +220,10 @@ impl Place<'_> {
     }
 }
 
-impl<S: Simd> Band<f64x8<S>> {
+impl<S: Simd> Band<f64x4<S>> {
     /// That of one of the pixels.
     fn one(&self, i: usize) -> Band {
-        let one = |line: &Line<f64x8<S>>| Line {
+        let one = |line: &Line<f64x4<S>>| Line {
             value: line.value[i],
             per_column: line.per_column[i],
             per_row: line.per_row[i],
@@ -281,6 +281,10 @@ impl Listing<f64> for Listed<'_> {
 }
 
 /// What of a patch is the disk.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "it is taken apart where it is made, and a box would be allocated"
+)]
 enum Seen {
     All,
     Nothing,

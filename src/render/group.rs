@@ -1,8 +1,8 @@
 //! Four tiles of one size side by side: which of them are all disk or all sky, which edges are open over the others, and
-//! whether those are quadratics there.
+//! whether those are cubics there.
 //!
-//! A tile is drawn from its edges' quadratics where these are right to a small share of a pixel: in each pixel's centre
-//! an edge's quadratic is compared with what it may be off by, and with how far the pixel looks to either side. What
+//! A tile is drawn from its edges' cubics where these are right to a small share of a pixel: in each pixel's centre
+//! an edge's cubic is compared with what it may be off by, and with how far the pixel looks to either side. What
 //! decides nothing are the pixels along the edges, which are asked. The comparison is in single precision, many pixels
 //! side by side; its rounding is part of the doubt.
 
@@ -17,6 +17,20 @@ use crate::lanes::{Level, Real, dispatch};
 /// How many tiles stand side by side.
 pub(super) const TILES: usize = 4;
 
+/// Four tiles.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tiles {
+    /// Their centres.
+    pub(super) columns: [f64; TILES],
+    pub(super) rows: [f64; TILES],
+    /// Pixels from there to their sides.
+    pub(super) half: [f64; 2],
+    /// A bit for each: whether it is asked about.
+    pub(super) active: u32,
+    /// The edges open over a tile that they are part of.
+    pub(super) before: Option<Open>,
+}
+
 /// What is known of four tiles: a bit for each in every mask.
 #[derive(Debug, Clone)]
 pub(super) struct Group {
@@ -26,11 +40,13 @@ pub(super) struct Group {
     pub(super) miss: u32,
     /// Nothing is known: they are in both quarter turns, or all about the hole's direction.
     pub(super) unknown: u32,
-    /// All edges open over them are quadratics, and straight over each pixel.
-    pub(super) quadratic: u32,
+    /// All edges open over them are cubics, and straight over each pixel.
+    pub(super) cubic: u32,
     /// The edges that are open over any of them.
     edges: [GroupEdge; MOST_EDGES],
     count: usize,
+    /// In each quarter turn.
+    turns: [Turn; 2],
     half: [f64; 2],
 }
 
@@ -40,33 +56,35 @@ struct GroupEdge {
     of: EdgeOf,
     quarter: usize,
     tiles: u32,
-    /// Value, slopes along columns and rows, and what goes with the columns' square, with both, with the rows' square:
-    /// each for every tile.
-    quadratics: [[f64; TILES]; 6],
+    /// Of each tile: its value in the centre, its slopes along columns and rows, and half its bend; as multiples of what
+    /// the edge may be off by, positive within its band.
+    cubics: [[f64; TILES]; 4],
 }
 
-/// An edge over a tile, as a multiple of what it may be off by: positive within its band.
+/// One of its cubics: `value + per_column dx + per_row dy − half_bend` times what [`Turn`] tells.
 #[derive(Debug, Clone, Copy, Default)]
-struct Quadratic {
+struct Cubic {
     value: f32,
     per_column: f32,
     per_row: f32,
-    columns: f32,
-    both: f32,
-    rows: f32,
+    half_bend: f32,
 }
 
-impl Quadratic {
+/// How rays turn over each tile, for its cubics: `(across·d)² (1 − along·d)`.
+#[derive(Debug, Clone, Copy, Default)]
+struct Turn {
+    across: [[f64; TILES]; 2],
+    along: [[f64; TILES]; 2],
+}
+
+impl Cubic {
     fn of(edge: &GroupEdge, tile: usize) -> Self {
-        let [value, per_column, per_row, columns, both, rows] =
-            edge.quadratics.map(|four| four[tile] as f32);
+        let [value, per_column, per_row, half_bend] = edge.cubics.map(|four| four[tile] as f32);
         Self {
             value,
             per_column,
             per_row,
-            columns,
-            both,
-            rows,
+            half_bend,
         }
     }
 }
@@ -77,7 +95,7 @@ pub(super) struct Asked {
     pixels: [(u8, u8); TILE * TILE],
     count: usize,
     /// The tile's edges, each with whether it is another piece's than the one before.
-    edges: [(bool, Quadratic); MOST_EDGES],
+    edges: [(bool, Cubic); MOST_EDGES],
 }
 
 impl Asked {
@@ -85,7 +103,7 @@ impl Asked {
         Self {
             pixels: [(0, 0); TILE * TILE],
             count: 0,
-            edges: [(false, Quadratic::default()); MOST_EDGES],
+            edges: [(false, Cubic::default()); MOST_EDGES],
         }
     }
 
@@ -103,52 +121,40 @@ impl Group {
             },
             quarter: 0,
             tiles: 0,
-            quadratics: [[0.0; TILES]; 6],
+            cubics: [[0.0; TILES]; 4],
         };
         Self {
             hit: 0,
             miss: 0,
             unknown: 0,
-            quadratic: 0,
+            cubic: 0,
             edges: [edge; MOST_EDGES],
             count: 0,
+            turns: [Turn::default(); 2],
             half: [0.0; 2],
         }
     }
 
-    /// Looks at the tiles about (columns, rows), so many pixels to either side, of those that `active` has a bit for.
-    /// `before` are the edges open over a tile that they are part of.
-    pub(super) fn look(
-        &mut self,
-        level: Level,
-        picture: &Picture<'_>,
-        (columns, rows): ([f64; TILES], [f64; TILES]),
-        half: [f64; 2],
-        active: u32,
-        before: Option<Open>,
-        kind: Kind,
-    ) {
-        dispatch!(level, simd => self.look_in(simd, picture, (columns, rows), half, active, before, kind));
+    /// Looks at tiles.
+    pub(super) fn look(&mut self, level: Level, picture: &Picture<'_>, tiles: &Tiles, kind: Kind) {
+        dispatch!(level, simd => self.look_in(simd, picture, tiles, kind));
     }
 
     #[inline(always)]
-    fn look_in<S: Simd>(
-        &mut self,
-        simd: S,
-        picture: &Picture<'_>,
-        (columns, rows): ([f64; TILES], [f64; TILES]),
-        half: [f64; 2],
-        active: u32,
-        before: Option<Open>,
-        kind: Kind,
-    ) {
+    fn look_in<S: Simd>(&mut self, simd: S, picture: &Picture<'_>, tiles: &Tiles, kind: Kind) {
+        let &Tiles {
+            half,
+            active,
+            before,
+            ..
+        } = tiles;
         let (columns, rows) = (
-            f64x4::from_slice(simd, &columns),
-            f64x4::from_slice(simd, &rows),
+            f64x4::from_slice(simd, &tiles.columns),
+            f64x4::from_slice(simd, &tiles.rows),
         );
         self.count = 0;
         self.half = half;
-        (self.hit, self.miss, self.quadratic) = (0, 0, active);
+        (self.hit, self.miss, self.cubic) = (0, 0, active);
         let mut left = active;
         for quarter in 0..2 {
             if left == 0 || before.is_some_and(|before| before.quarter() != quarter) {
@@ -160,6 +166,10 @@ impl Group {
                 continue;
             }
             left &= !sound;
+            self.turns[quarter] = Turn {
+                across: patch.across().map(Into::into),
+                along: patch.along().map(Into::into),
+            };
             let before = before.unwrap_or(Open::all(quarter));
             let mut listed = Listed {
                 group: self,
@@ -218,7 +228,7 @@ impl Group {
             .filter(move |edge| edge.tiles & (1 << tile) != 0)
     }
 
-    /// Draws a tile whose edges are quadratics: white pixels into `rows`, those along the edges into `asked`. The first
+    /// Draws a tile whose edges are cubics: white pixels into `rows`, those along the edges into `asked`. The first
     /// `size` columns and rows of it are in the picture.
     pub(super) fn draw(
         &self,
@@ -250,12 +260,15 @@ impl Group {
         let mut count = 0;
         let mut last = None;
         for edge in self.edges_of(tile) {
-            edges[count] = (last != Some(edge.of.piece), Quadratic::of(edge, tile));
+            edges[count] = (last != Some(edge.of.piece), Cubic::of(edge, tile));
             last = Some(edge.of.piece);
             count += 1;
         }
         let edges = &edges[..count];
         let half = self.half.map(|half| half as f32);
+        let quarter = self.edges_of(tile).next().map_or(0, |edge| edge.quarter);
+        let [right, down] = self.turns[quarter].across.map(|four| four[tile] as f32);
+        let [farther_right, farther_down] = self.turns[quarter].along.map(|four| four[tile] as f32);
         let steps = f32x8::from_slice(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
         let (one, minus_one) = (f32x8::splat(simd, 1.0), f32x8::splat(simd, -1.0));
         *found = 0;
@@ -265,13 +278,14 @@ impl Group {
             for (block, row) in row.chunks_mut(8).enumerate() {
                 let first = 8 * block;
                 let dx = steps + (first as f32 + 0.5 - half[0]);
+                let across = dx * right + dy * down;
+                let bend = across * across * (-(dx * farther_right) + (1.0 - dy * farther_down));
                 // The most of the bands, each of which is the least of its edges.
                 let mut most = f32x8::splat(simd, f32::NEG_INFINITY);
                 let mut least = most;
                 for (new, edge) in edges {
-                    let value = edge.value + dy * (edge.per_row + dy * edge.rows);
-                    let slope = edge.per_column + dy * edge.both;
-                    let g = dx * (dx * edge.columns + slope) + value;
+                    let value = edge.value + dy * edge.per_row;
+                    let g = dx * edge.per_column + value - bend * edge.half_bend;
                     if *new {
                         most = simd.max_f32x8(most, least);
                         least = g;
@@ -313,13 +327,13 @@ struct Listed<'a, T> {
 impl<T: Real + Into<[f64; TILES]>> Listing<T> for Listed<'_, T> {
     #[inline(always)]
     fn list(&mut self, of: EdgeOf, tiles: u32, bent: &Bent<T>) {
-        let (quadratics, good) = quadratics(self.patch, bent, of.edge, self.kind);
-        self.group.quadratic &= good | !tiles;
+        let (cubics, good) = cubics(self.patch, bent, of.edge, self.kind);
+        self.group.cubic &= good | !tiles;
         self.group.edges[self.group.count] = GroupEdge {
             of,
             quarter: self.patch.quarter(),
             tiles,
-            quadratics,
+            cubics,
         };
         self.group.count += 1;
     }
@@ -350,20 +364,19 @@ const SPREAD: [[u8; 8]; 256] = {
     spread
 };
 
-/// An edge's quadratics over four tiles, and for which of them it is one.
+/// An edge's cubics over four tiles, and for which of them it is one.
 #[inline(always)]
-fn quadratics<T: Real + Into<[f64; TILES]>>(
+fn cubics<T: Real + Into<[f64; TILES]>>(
     patch: &Patch<T>,
     bent: &Bent<T>,
     edge: Edge,
     kind: Kind,
-) -> ([[f64; TILES]; 6], u32) {
+) -> ([[f64; TILES]; 4], u32) {
     /// Of what an edge may be off its tangent in a pixel by the pixel's own bounds. A tile's are wider than these.
     const SURELY_STRAIGHT: f64 = 0.9 * STRAIGHT;
-    /// The share of its terms by which a quadratic is off in single precision: its nine roundings, with room.
-    const ROUNDING: f64 = 1.0 / 1_048_576.0;
+    /// The share of its terms by which a cubic is off in single precision: its dozen roundings, with room.
+    const ROUNDING: f64 = 1.0 / 524_288.0;
     let [half_columns, half_rows] = patch.half();
-    let [right, down] = patch.across();
     let line = &bent.line;
     let turning = patch.turning(bent);
     let (steep_columns, steep_rows) = (line.per_column.abs(), line.per_row.abs());
@@ -378,14 +391,11 @@ fn quadratics<T: Real + Into<[f64; TILES]>>(
     let seen = (steep_columns + turning[0] + steep_rows + turning[1]) * kind.reach;
     let sign = if edge == Edge::Outer { 1.0 } else { -1.0 };
     let unit = steep.all(sign) / (off + seen + terms * ROUNDING);
-    let bend = unit * bent.bend.middle;
-    let quadratics = [
+    let cubics = [
         (unit * line.value).into(),
         (unit * line.per_column).into(),
         (unit * line.per_row).into(),
-        (bend * right * right * -0.5).into(),
-        (-(bend * right * down)).into(),
-        (bend * down * down * -0.5).into(),
+        (unit * bent.bend.middle * 0.5).into(),
     ];
-    (quadratics, good)
+    (cubics, good)
 }

@@ -1,14 +1,14 @@
 //! Where a frame changes: tiles that are wholly within the disk or wholly off it are found and filled, what is left are
 //! the pixels along its edges.
 //!
-//! Tiles are looked at four by four (see [`Group`]). One whose edges are not yet quadratics is split, and only the
+//! Tiles are looked at four by four (see [`Group`]). One whose edges are not yet cubics is split, and only the
 //! edges that were open over it are looked at again.
 
 use rayon::prelude::*;
 
 use super::RenderError;
 use super::coverage::Shares;
-use super::group::{Asked, Group, TILES};
+use super::group::{Asked, Group, TILES, Tiles};
 use super::mask::{Hard, WHITE};
 use crate::isoradial::{Bundle, Isoradials, Open, Picture, Verdict};
 use crate::lanes::{Level, level};
@@ -17,12 +17,15 @@ use crate::scene::View;
 /// The side of the largest tiles, in pixels.
 pub(super) const TILE: usize = 64;
 
+/// The side of the largest tiles that are drawn from their edges' cubics: of larger ones most is no edge.
+const DRAWN: usize = 16;
+
 /// How a frame's pixels look at their edges.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Kind {
     /// How far from its centre a pixel looks to either side, in pixels: 0 for what its centre sees.
     pub(super) reach: f64,
-    /// A tile is drawn from its edges' quadratics where what is not quadratic of them is below this, in pixels: a
+    /// A tile is drawn from its edges' cubics where what is not cubic of them is below this, in pixels: a
     /// compromise between tiles and pixels to be asked.
     pub(super) doubt: f64,
     /// The side of the smallest tiles, in pixels.
@@ -145,22 +148,17 @@ impl<P: Pixels> Filler<'_, P> {
         for (i, tile) in tiles.iter().enumerate() {
             active |= u32::from(tile.width > 0 && tile.height > 0) << i;
         }
-        let centres = (
-            corners.map(|(left, _)| left as f64 + half),
-            corners.map(|(_, top)| (band.first + top) as f64 + half),
-        );
-        band.group.look(
-            self.level,
-            &self.picture,
-            centres,
-            [half; 2],
+        let four = Tiles {
+            columns: corners.map(|(left, _)| left as f64 + half),
+            rows: corners.map(|(_, top)| (band.first + top) as f64 + half),
+            half: [half; 2],
             active,
             before,
-            P::KIND,
-        );
+        };
+        band.group.look(self.level, &self.picture, &four, P::KIND);
         let group = &band.group;
         let (hit, miss, unknown) = (group.hit, group.miss, group.unknown);
-        let quadratic = group.quadratic;
+        let cubic = group.cubic;
         let mut split = [None; TILES];
         for (i, tile) in tiles.into_iter().enumerate() {
             let is = |mask: u32| mask & (1 << i) != 0;
@@ -169,7 +167,7 @@ impl<P: Pixels> Filler<'_, P> {
                 band.whiten(tile);
             } else if is(unknown) {
                 split[i] = self.fill_bundle(band, tile).then_some(None);
-            } else if is(quadratic) {
+            } else if is(cubic) && side <= DRAWN {
                 self.draw(band, tile, i);
             } else {
                 split[i] = Some(Some(band.group.open(i)));
@@ -216,7 +214,7 @@ impl<P: Pixels> Filler<'_, P> {
         self.fill(band, corners, half, open);
     }
 
-    /// Draws a tile from its edges' quadratics, and asks the pixels along them.
+    /// Draws a tile from its edges' cubics, and asks the pixels along them.
     fn draw(&self, band: &mut Band<'_>, tile: Tile, index: usize) {
         let first = tile.top * band.stride + tile.left;
         let (pixels, group) = (&mut band.pixels[first..], &band.group);

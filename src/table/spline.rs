@@ -10,7 +10,7 @@ use core::ops::{Mul, Sub};
 use serde::{Deserialize, Serialize};
 use wide::f64x2;
 
-use crate::lanes::Real;
+use crate::lanes::{Real, rounded};
 
 /// A uniform axis whose ends lie exactly on its first and its last node.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -59,9 +59,6 @@ impl Axis {
         f64::from(self.nodes - 1) / (self.end - self.start)
     }
 }
-
-/// 1.5 · 2⁵²: a sum with it is rounded to an integer, which stands in its lowest bits.
-const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
 /// An axis ready for lookups.
 #[derive(Debug, Clone, Copy)]
@@ -136,19 +133,15 @@ impl Scale {
     #[inline(always)]
     pub(super) fn nearest(self, x: f64) -> usize {
         let t = (x - self.start) * self.per_unit;
-        ((t + ROUNDER).to_bits() as i32)
-            .max(0)
-            .min(self.last_cell + 1) as usize
+        rounded(t, self.last_cell + 1) as usize
     }
 
     /// The cell of `t`, in units of cells, within the axis.
     #[inline(always)]
-    fn cell(self, t: f64) -> i32 {
+    fn cell(self, t: f64) -> u32 {
         // Rounding t − ½ gives the cell; a node belongs to the one or the other of its cells, whose cubics agree
         // there. Whatever the bits hold for a t that is no number of a cell, the index stays within the axis.
-        ((t - 0.5 + ROUNDER).to_bits() as i32)
-            .max(0)
-            .min(self.last_cell)
+        rounded(t - 0.5, self.last_cell)
     }
 }
 
@@ -222,7 +215,7 @@ pub(crate) struct Jet<T = f64> {
 #[inline(always)]
 pub(crate) fn value_and_slope<T: Real>(coefficients: &[f64], axis: Scale, x: T) -> [T; 2] {
     let (cell, share) = axis.cells_and_shares(axis.in_cells(x));
-    within_cell(axis, share, x.from_each(coefficients, cell))
+    within_cell(axis, share, x.neighbours(coefficients, cell))
 }
 
 /// A spline's value and slope at a share of a cell, between the four coefficients about it.
@@ -277,7 +270,7 @@ pub(crate) fn jet<T: Real>(
     about: &Cells<T>,
 ) -> Jet<T> {
     let share = about.share;
-    let c = share.from_each(coefficients, about.cell);
+    let c = share.neighbours(coefficients, about.cell);
     let [value, slope] = within_cell(axis, share, c);
     let [c0, c1, c2, c3] = c;
     let (first, second) = (c0 - c1 * 2.0 + c2, c1 - c2 * 2.0 + c3);

@@ -1,0 +1,53 @@
+//! Guards against frames that depend on the machine's instructions.
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::cargo::cargo_bin_cmd;
+
+const SETS: [&str; 4] = ["scalar", "sse4.2", "avx2", "avx512"];
+
+/// A picture drawn with no more than an instruction set; where the machine has no such instructions, with the best it
+/// has.
+fn drawn(set: &str, scene: &str, antialias: &str, folder: &Path) -> Vec<u8> {
+    let picture = folder.join("frame.png");
+    cargo_bin_cmd!("darkness")
+        .current_dir(folder)
+        .args(["render", scene, "--quiet", "--antialias", antialias])
+        .args(["--size", "640x360", "-o", "frame.png"])
+        .env("DARKNESS_SIMD", set)
+        .assert()
+        .success();
+    fs::read(picture).unwrap()
+}
+
+#[test]
+fn every_instruction_set_draws_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    for scene in ["classic", "edge-on", "inside", "photon-ring"] {
+        for antialias in ["true", "false"] {
+            let frames = SETS.map(|set| drawn(set, scene, antialias, folder.path()));
+            for (set, frame) in SETS.iter().zip(&frames) {
+                assert!(
+                    *frame == frames[0],
+                    "{scene}, antialias {antialias}: {set} and {} differ",
+                    SETS[0]
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn another_name_is_refused() {
+    let refused = cargo_bin_cmd!("darkness")
+        .args(["scene"])
+        .env("DARKNESS_SIMD", "avx3")
+        .assert()
+        .code(2);
+    let message = String::from_utf8_lossy(&refused.get_output().stderr).into_owned();
+    assert!(
+        message.contains("avx3") && message.contains("sse4.2"),
+        "{message}"
+    );
+}
