@@ -4,8 +4,7 @@
 use core::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::OnceLock;
 
-pub(crate) use fearless_simd::{Level, dispatch};
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f64x4};
+use fearless_simd::{Fallback, Select, Simd, SimdBase, SimdFloat, SimdMask, f64x4};
 
 /// One real number, or several of them.
 pub(crate) trait Real:
@@ -57,6 +56,12 @@ pub(crate) trait Real:
     }
 }
 
+/// Four real numbers.
+pub(crate) trait Four: Real + Into<[f64; 4]> {
+    /// These four: `self` is any.
+    fn of(self, numbers: [f64; 4]) -> Self;
+}
+
 impl Real for f64 {
     #[inline(always)]
     fn all(self, value: f64) -> Self {
@@ -100,6 +105,13 @@ impl Real for f64 {
     #[inline(always)]
     fn range_of(self, list: &[f64], [first]: [usize; 1], [last]: [usize; 1]) -> [Self; 2] {
         range_of(list, first, last)
+    }
+}
+
+impl<S: Simd> Four for f64x4<S> {
+    #[inline(always)]
+    fn of(self, numbers: [f64; 4]) -> Self {
+        Self::from_slice(self.simd, &numbers)
     }
 }
 
@@ -163,17 +175,161 @@ impl<S: Simd> Real for f64x4<S> {
 
     #[inline(always)]
     fn range_of(self, list: &[f64], first: [usize; 4], last: [usize; 4]) -> [Self; 2] {
+        ranges_of(self, list, first, last)
+    }
+}
+
+/// Four numbers one by one, on machines that have no instructions for several at once. (The library's own takes the
+/// compiler minutes.)
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct OneByOne([f64; 4]);
+
+/// One operation on each number.
+macro_rules! each {
+    ($a:expr, $of:expr) => {{
+        let [a0, a1, a2, a3] = $a.0;
+        OneByOne([$of(a0), $of(a1), $of(a2), $of(a3)])
+    }};
+    ($a:expr, $b:expr, $of:expr) => {{
+        let ([a0, a1, a2, a3], [b0, b1, b2, b3]) = ($a.0, $b.0);
+        OneByOne([$of(a0, b0), $of(a1, b1), $of(a2, b2), $of(a3, b3)])
+    }};
+}
+
+/// One operator between numbers, and between them and one number.
+macro_rules! operator {
+    ($operator:ident, $name:ident) => {
+        impl $operator for OneByOne {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $name(self, other: Self) -> Self {
+                each!(self, other, f64::$name)
+            }
+        }
+
+        impl $operator<f64> for OneByOne {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $name(self, other: f64) -> Self {
+                each!(self, |number: f64| number.$name(other))
+            }
+        }
+    };
+}
+
+operator!(Add, add);
+operator!(Sub, sub);
+operator!(Mul, mul);
+operator!(Div, div);
+
+impl Neg for OneByOne {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        each!(self, f64::neg)
+    }
+}
+
+impl From<OneByOne> for [f64; 4] {
+    #[inline(always)]
+    fn from(four: OneByOne) -> Self {
+        four.0
+    }
+}
+
+impl Four for OneByOne {
+    #[inline(always)]
+    fn of(self, numbers: [f64; 4]) -> Self {
+        Self(numbers)
+    }
+}
+
+impl Real for OneByOne {
+    #[inline(always)]
+    fn all(self, value: f64) -> Self {
+        Self([value, value, value, value])
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        each!(self, f64::sqrt)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        each!(self, f64::abs)
+    }
+
+    #[inline(always)]
+    fn if_less(self, other: Self, then: Self, otherwise: Self) -> Self {
+        let (a, b, c, d) = (self.0, other.0, then.0, otherwise.0);
+        Self([
+            a[0].if_less(b[0], c[0], d[0]),
+            a[1].if_less(b[1], c[1], d[1]),
+            a[2].if_less(b[2], c[2], d[2]),
+            a[3].if_less(b[3], c[3], d[3]),
+        ])
+    }
+
+    #[inline(always)]
+    fn less(self, other: Self) -> u32 {
+        let (a, b) = (self.0, other.0);
+        a[0].less(b[0]) | a[1].less(b[1]) << 1 | a[2].less(b[2]) << 2 | a[3].less(b[3]) << 3
+    }
+
+    type Indices = [usize; 4];
+
+    #[inline(always)]
+    fn rounded(self, last: i32) -> ([usize; 4], Self) {
         let [a, b, c, d] = [
-            range_of(list, first[0], last[0]),
-            range_of(list, first[1], last[1]),
-            range_of(list, first[2], last[2]),
-            range_of(list, first[3], last[3]),
+            rounded(self.0[0], last),
+            rounded(self.0[1], last),
+            rounded(self.0[2], last),
+            rounded(self.0[3], last),
         ];
+        (
+            [a as usize, b as usize, c as usize, d as usize],
+            Self([f64::from(a), f64::from(b), f64::from(c), f64::from(d)]),
+        )
+    }
+
+    #[inline(always)]
+    fn neighbours(self, list: &[f64], [a, b, c, d]: [usize; 4]) -> [Self; 4] {
+        let (a, b, c, d) = (
+            &list[a..a + 4],
+            &list[b..b + 4],
+            &list[c..c + 4],
+            &list[d..d + 4],
+        );
         [
-            Self::from_slice(self.simd, &[a[0], b[0], c[0], d[0]]),
-            Self::from_slice(self.simd, &[a[1], b[1], c[1], d[1]]),
+            Self([a[0], b[0], c[0], d[0]]),
+            Self([a[1], b[1], c[1], d[1]]),
+            Self([a[2], b[2], c[2], d[2]]),
+            Self([a[3], b[3], c[3], d[3]]),
         ]
     }
+
+    #[inline(always)]
+    fn range_of(self, list: &[f64], first: [usize; 4], last: [usize; 4]) -> [Self; 2] {
+        ranges_of(self, list, first, last)
+    }
+}
+
+#[inline(always)]
+fn ranges_of<T: Four>(like: T, list: &[f64], first: [usize; 4], last: [usize; 4]) -> [T; 2] {
+    let [a, b, c, d] = [
+        range_of(list, first[0], last[0]),
+        range_of(list, first[1], last[1]),
+        range_of(list, first[2], last[2]),
+        range_of(list, first[3], last[3]),
+    ];
+    [
+        like.of([a[0], b[0], c[0], d[0]]),
+        like.of([a[1], b[1], c[1], d[1]]),
+    ]
 }
 
 /// 1.5 · 2⁵²: a sum with it is rounded to an integer, which stands in its lowest bits.
@@ -198,6 +354,64 @@ fn range_of(list: &[f64], first: usize, last: usize) -> [f64; 2] {
     [least, greatest]
 }
 
+/// An instruction set that the machine has.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Level {
+    /// One number after the other.
+    Scalar,
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    Sse4_2(fearless_simd::x86::Sse4_2),
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    Avx2(fearless_simd::x86::Avx2),
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    Avx512(fearless_simd::x86::Avx512),
+    #[cfg(target_arch = "aarch64")]
+    Neon(fearless_simd::aarch64::Neon),
+}
+
+/// What `$op` is with the instructions of a level: `$simd` is what makes vectors of the library, `$four` any four
+/// numbers.
+macro_rules! dispatch {
+    ($level:expr, |$simd:ident, $four:ident| $op:expr) => {{
+        use $crate::lanes::Level;
+        match $level {
+            Level::Scalar => {
+                let ($simd, $four) = $crate::lanes::one_by_one();
+                $op
+            }
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Level::Sse4_2(simd) => $crate::lanes::dispatch!(@ simd, |$simd, $four| $op),
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Level::Avx2(simd) => $crate::lanes::dispatch!(@ simd, |$simd, $four| $op),
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Level::Avx512(simd) => $crate::lanes::dispatch!(@ simd, |$simd, $four| $op),
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon(simd) => $crate::lanes::dispatch!(@ simd, |$simd, $four| $op),
+        }
+    }};
+    (@ $token:expr, |$simd:ident, $four:ident| $op:expr) => {
+        fearless_simd::Simd::vectorize(
+            $token,
+            #[inline(always)]
+            || {
+                let ($simd, $four) = $crate::lanes::side_by_side($token);
+                $op
+            },
+        )
+    };
+}
+pub(crate) use dispatch;
+
+#[inline(always)]
+pub(crate) fn one_by_one() -> (Fallback, OneByOne) {
+    (Fallback::new(), OneByOne([0.0; 4]))
+}
+
+#[inline(always)]
+pub(crate) fn side_by_side<S: Simd>(simd: S) -> (S, f64x4<S>) {
+    (simd, f64x4::splat(simd, 0.0))
+}
+
 /// The instruction sets that `DARKNESS_SIMD` may name.
 pub(crate) const NAMES: [&str; 4] = ["scalar", "sse4.2", "avx2", "avx512"];
 
@@ -205,30 +419,39 @@ pub(crate) const NAMES: [&str; 4] = ["scalar", "sse4.2", "avx2", "avx512"];
 /// not exclude: `scalar`, `sse4.2`, `avx2` or `avx512`.
 pub(crate) fn level() -> Level {
     static LEVEL: OnceLock<Level> = OnceLock::new();
-    *LEVEL.get_or_init(|| match std::env::var("DARKNESS_SIMD") {
-        Ok(name) => capped(&name),
-        Err(_) => Level::new(),
-    })
+    *LEVEL.get_or_init(|| best(std::env::var("DARKNESS_SIMD").ok().as_deref()))
 }
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-fn capped(name: &str) -> Level {
-    let best = Level::new();
-    match name {
-        "scalar" => Level::fallback(),
-        "sse4.2" => best.as_sse4_2().map_or(best, Level::Sse4_2),
-        "avx2" => best.as_avx2().map_or(best, Level::Avx2),
-        _ => best,
+fn best(cap: Option<&str>) -> Level {
+    let best = fearless_simd::Level::new();
+    let (sse4_2, avx2) = (best.as_sse4_2(), best.as_avx2());
+    let levels = [
+        best.as_avx512().map(Level::Avx512),
+        avx2.map(Level::Avx2),
+        sse4_2.map(Level::Sse4_2),
+    ];
+    let excluded = match cap {
+        Some("scalar") => 3,
+        Some("sse4.2") => 2,
+        Some("avx2") => 1,
+        _ => 0,
+    };
+    let mut levels = levels.into_iter().skip(excluded).flatten();
+    levels.next().unwrap_or(Level::Scalar)
+}
+
+#[cfg(target_arch = "aarch64")]
+fn best(cap: Option<&str>) -> Level {
+    match fearless_simd::Level::new() {
+        fearless_simd::Level::Neon(neon) if cap != Some("scalar") => Level::Neon(neon),
+        _ => Level::Scalar,
     }
 }
 
-#[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-fn capped(name: &str) -> Level {
-    if name == "scalar" {
-        Level::fallback()
-    } else {
-        Level::new()
-    }
+#[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")))]
+fn best(_: Option<&str>) -> Level {
+    Level::Scalar
 }
 
 /// Whether `DARKNESS_SIMD` is one of the names there are, or not set.

@@ -51,7 +51,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 use crate::orbit::path::{Between, SweptAngles};
 use nodes::{Coarsest, LOOKED_AT, Nodes, SOLVED, coarsest};
-pub(crate) use open::{Band, EdgeOf, Listing, MOST_BANDS, MOST_EDGES, Open};
+pub(crate) use open::{Band, EdgeOf, Listing, MOST_BANDS, MOST_EDGES, Open, Sifted};
 pub(crate) use patch::{Bent, Patch};
 pub(crate) use picture::{Line, Picture};
 use piece::{Piece, thickness};

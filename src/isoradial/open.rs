@@ -1,8 +1,9 @@
 //! Which curves are open over a patch: neither wholly on one side of it nor on the other.
 
+use super::Edge;
 use super::patch::{Bent, Patch};
 use super::picture::{Line, Picture, Spot};
-use super::{Edge, Isoradials};
+use super::piece::Piece;
 use crate::lanes::Real;
 
 /// As many orders as there are at most.
@@ -90,7 +91,7 @@ pub(crate) trait Listing<T> {
     fn list(&mut self, of: EdgeOf, patches: u32, bent: &Bent<T>);
 }
 
-impl Isoradials {
+impl Picture<'_> {
     /// What is open over patches of one quarter turn, of those that `active` has a bit for: `found` is told each edge
     /// that is, with a bit for each patch over which it is, each piece's outer edge before its inner one. `before` are
     /// the edges that were open over a patch that they are part of.
@@ -102,9 +103,14 @@ impl Isoradials {
         before: Open,
         list: &mut impl Listing<T>,
     ) -> Sifted {
-        let pieces = self.quarter(patch.quarter());
+        let pieces = self.curves.quarter(patch.quarter());
         let none = patch.none();
         let mut asked = before.edges & ((1 << (2 * pieces.len())) - 1);
+        if self.n == 0.0 && pieces.first().is_some_and(Piece::has_pole) {
+            // From within the disk's plane the direct image's φ is 0 over the first quarter turn: the ray meets the
+            // plane where the camera is, which is not in the disk.
+            asked &= !3;
+        }
         let (mut hit, mut open) = (0, 0);
         while asked != 0 {
             let piece = asked.trailing_zeros() as usize / 2;
@@ -149,9 +155,7 @@ impl Isoradials {
             miss: active & !hit & !open,
         }
     }
-}
 
-impl Picture<'_> {
     /// An edge's tangent at a place.
     #[inline(always)]
     pub(crate) fn tangent<T: Real>(&self, spot: &Spot<T>, of: EdgeOf) -> Line<T> {

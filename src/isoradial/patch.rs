@@ -278,18 +278,6 @@ impl<T: Real> Patch<T> {
         let spot = &self.spot;
         let jet = piece.jet(edge, about);
         let (line, h) = spot.line_of(piece, jet.value, jet.slope);
-        if spot.meets_itself(piece) {
-            let none = h.all(0.0);
-            return Bent {
-                line,
-                rounding: none,
-                bend: Interval {
-                    middle: none,
-                    radius: none,
-                },
-                rest: none,
-            };
-        }
         let third = Interval::between(jet.third);
         let bend = Interval {
             middle: jet.bend,
@@ -303,15 +291,15 @@ impl<T: Real> Patch<T> {
             let rate = bend.times(both).scaled(3.0);
             (middle, rate.plus(third.times(self.share.times(self.turn))))
         } else {
-            let sign = if spot.quarter == 0 { 1.0 } else { -1.0 };
             let slope = Interval {
                 middle: jet.slope,
                 radius: bend.most() * self.reach,
             };
             let twice = self.turn.plus(both);
-            let middle = jet.value + x * twice.middle * jet.slope * sign + x * x * v2 * jet.bend;
+            let middle =
+                jet.value + x * twice.middle * jet.slope * spot.sense + x * x * v2 * jet.bend;
             let first = slope.times(both).scaled(6.0);
-            let second = bend.times(self.share.times(twice)).scaled(3.0 * sign);
+            let second = bend.times(self.share.times(twice)).scaled(3.0 * spot.sense);
             let last = third.times(self.share.squared().times(self.turn));
             (middle, first.plus(second).plus(last))
         };

@@ -47,8 +47,8 @@ pub(super) struct Change {
 pub(crate) struct Spot<T = f64> {
     /// In which quarter turn it meets the disk's plane, 0 or 1.
     pub(super) quarter: usize,
-    /// Whether the camera stands in the disk's plane: x is 0 or 1 all over the quarter turn.
-    pub(super) within_plane: bool,
+    /// 1 in the first quarter turn, −1 in the second: the sign of dx/dx̂.
+    pub(super) sense: f64,
     pub(super) z: T,
     /// `z − κ_c s`.
     pub(super) excess: T,
@@ -155,7 +155,7 @@ impl<'a> Picture<'a> {
         let [right, down] = self.per_pixel;
         Spot {
             quarter,
-            within_plane: n == 0.0,
+            sense: if quarter == 0 { 1.0 } else { -1.0 },
             z,
             excess: z - s * critical,
             s,
@@ -193,14 +193,6 @@ impl<T: Real> Spot<T> {
         } else {
             (kept, self.share * self.turn * slope)
         };
-        if self.meets_itself(piece) {
-            let line = Line {
-                value: -h,
-                per_column: h.all(0.0),
-                per_row: h.all(0.0),
-            };
-            return (line, h);
-        }
         let kappa = h + self.critical;
         let ([along_columns, along_rows], [across_columns, across_rows]) =
             (self.along, self.across);
@@ -210,13 +202,6 @@ impl<T: Real> Spot<T> {
             per_row: -(kappa * along_rows - self.slope[1]) - turning * across_rows,
         };
         (line, h)
-    }
-
-    /// Whether the ray meets the disk's plane at once: at φ = 0 it is on one side of every curve, whatever it is, and h
-    /// is infinite.
-    #[inline(always)]
-    pub(super) fn meets_itself(&self, piece: &Piece) -> bool {
-        self.within_plane && piece.has_pole()
     }
 }
 

@@ -9,8 +9,6 @@
 //! A pixel over which an edge bends, where the whole ring is some pixels across, is cut into four, and those again
 //! where they must be: so are pixels that look at the hole.
 
-use fearless_simd::{Simd, SimdBase, f64x4};
-
 use super::area::{apart, share_beside, share_of_band, share_of_union};
 use super::group::{Asked, Group};
 use super::tiles::{Kind, Pixels, fill_frame};
@@ -19,11 +17,11 @@ use crate::isoradial::{
     Band, Bent, Bundle, Edge, EdgeOf, Isoradials, Line, Listing, MOST_BANDS, Open, Patch, Picture,
     Verdict,
 };
-use crate::lanes::{Level, Real, dispatch};
+use crate::lanes::{Four, Level, dispatch};
 use crate::scene::View;
 
 /// What is not linear of an edge over a pixel, in pixels, beyond which the pixel is cut up.
-pub(super) const STRAIGHT: f64 = 0.25;
+const STRAIGHT: f64 = 0.25;
 
 /// How often a pixel is cut at most: into parts of a sixteenth of its side.
 const CUTS: u32 = 4;
@@ -71,6 +69,8 @@ impl Pixels for Shares<'_> {
         reach: 0.5,
         // Measured as the cheapest.
         doubt: 0.2,
+        // A tile's bound is wider than the pixel's own.
+        bend: 0.9 * STRAIGHT,
         smallest: 1,
     };
 
@@ -97,7 +97,12 @@ impl Pixels for Shares<'_> {
             edges: &edges,
             corner,
         };
-        dispatch!(level, simd => place.draw(simd, asked.pixels(), pixels, stride));
+        dispatch!(level, |_simd, four| place.draw(
+            four,
+            asked.pixels(),
+            pixels,
+            stride
+        ));
     }
 }
 
@@ -147,7 +152,7 @@ struct Place<'a> {
 impl Place<'_> {
     /// Draws some of its pixels.
     #[inline(always)]
-    fn draw<S: Simd>(&self, simd: S, asked: &[(u8, u8)], pixels: &mut [u8], stride: usize) {
+    fn draw<T: Four>(&self, like: T, asked: &[(u8, u8)], pixels: &mut [u8], stride: usize) {
         for some in asked.chunks(PIXELS) {
             let (mut columns, mut rows) = ([0.0; PIXELS], [0.0; PIXELS]);
             for i in 0..PIXELS {
@@ -156,10 +161,7 @@ impl Place<'_> {
                 columns[i] = (self.corner.0 + usize::from(column)) as f64 + 0.5;
                 rows[i] = (self.corner.1 + usize::from(row)) as f64 + 0.5;
             }
-            let shares = self.shares(
-                f64x4::from_slice(simd, &columns),
-                f64x4::from_slice(simd, &rows),
-            );
+            let shares = self.shares(like.of(columns), like.of(rows));
             for (&(i, j), share) in some.iter().zip(shares) {
                 pixels[usize::from(j) * stride + usize::from(i)] = byte(share);
             }
@@ -168,7 +170,7 @@ impl Place<'_> {
 
     /// The shares of pixels: as [`share_of_union`] has it, for all at once.
     #[inline(always)]
-    fn shares<S: Simd>(&self, columns: f64x4<S>, rows: f64x4<S>) -> [f64; PIXELS] {
+    fn shares<T: Four>(&self, columns: T, rows: T) -> [f64; PIXELS] {
         let spot = self.picture.spot(columns, rows, self.edges.quarter);
         let (none, all) = (columns.all(0.0), columns.all(1.0));
         let empty = Band {
@@ -193,8 +195,8 @@ impl Place<'_> {
                 return share.into();
             }
             most = most.larger(share);
-            sum += share;
-            count += none.if_less(share, all, none);
+            sum = sum + share;
+            count = count + none.if_less(share, all, none);
             partial[index] = none.less(share);
             for (before, is_partial) in bands[..index].iter().zip(partial) {
                 let both = partial[index] & is_partial;
@@ -220,13 +222,13 @@ impl Place<'_> {
     }
 }
 
-impl<S: Simd> Band<f64x4<S>> {
+impl<T: Four> Band<T> {
     /// That of one of the pixels.
     fn one(&self, i: usize) -> Band {
-        let one = |line: &Line<f64x4<S>>| Line {
-            value: line.value[i],
-            per_column: line.per_column[i],
-            per_row: line.per_row[i],
+        let one = |line: &Line<T>| Line {
+            value: line.value.into()[i],
+            per_column: line.per_column.into()[i],
+            per_row: line.per_row.into()[i],
         };
         Band {
             outer: self.outer.as_ref().map(one),
@@ -315,8 +317,7 @@ impl<'a> Shares<'a> {
             open: &mut open,
             piece: None,
         };
-        let curves = self.picture.curves();
-        let sifted = curves.sift(patch, 1, before, &mut listed);
+        let sifted = self.picture.sift(patch, 1, before, &mut listed);
         if sifted.hit != 0 {
             Seen::All
         } else if sifted.miss != 0 {

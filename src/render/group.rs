@@ -6,13 +6,12 @@
 //! decides nothing are the pixels along the edges, which are asked. The comparison is in single precision, many pixels
 //! side by side; its rounding is part of the doubt.
 
-use fearless_simd::{Simd, SimdBase, f32x8, f64x4};
+use fearless_simd::{Simd, SimdBase, f32x8};
 
-use super::coverage::STRAIGHT;
 use super::mask::WHITE;
 use super::tiles::{Kind, TILE};
-use crate::isoradial::{Bent, Edge, EdgeOf, Listing, MOST_EDGES, Open, Patch, Picture};
-use crate::lanes::{Level, Real, dispatch};
+use crate::isoradial::{Bent, Edge, EdgeOf, Listing, MOST_EDGES, Open, Patch, Picture, Sifted};
+use crate::lanes::{Four, Level, dispatch};
 
 /// How many tiles stand side by side.
 pub(super) const TILES: usize = 4;
@@ -43,7 +42,7 @@ pub(super) struct Group {
     /// All edges open over them are cubics, and straight over each pixel.
     pub(super) cubic: u32,
     /// The edges that are open over any of them.
-    edges: [GroupEdge; MOST_EDGES],
+    edges: [GroupEdge; 2 * MOST_EDGES + 1],
     count: usize,
     /// In each quarter turn.
     turns: [Turn; 2],
@@ -68,6 +67,28 @@ struct Cubic {
     per_column: f32,
     per_row: f32,
     half_bend: f32,
+}
+
+/// What is asked of four tiles.
+#[derive(Debug, Clone, Copy)]
+struct Look {
+    /// The edges that are looked at, and the quarter turn.
+    before: Open,
+    /// A bit for each: whether it is asked about.
+    active: u32,
+    /// Whether a tile may reach beyond the quarter turn's end. Its edges are not listed then.
+    beyond: bool,
+}
+
+/// What comes of it: a bit for each tile.
+#[derive(Debug, Clone, Copy, Default)]
+struct Seen {
+    /// The bounds are right for it.
+    sound: u32,
+    /// All its rays in the quarter turn meet the disk.
+    hit: u32,
+    /// None of them does.
+    miss: u32,
 }
 
 /// How rays turn over each tile, for its cubics: `(across·d)² (1 − along·d)`.
@@ -128,7 +149,7 @@ impl Group {
             miss: 0,
             unknown: 0,
             cubic: 0,
-            edges: [edge; MOST_EDGES],
+            edges: [edge; 2 * MOST_EDGES + 1],
             count: 0,
             turns: [Turn::default(); 2],
             half: [0.0; 2],
@@ -137,77 +158,83 @@ impl Group {
 
     /// Looks at tiles.
     pub(super) fn look(&mut self, level: Level, picture: &Picture<'_>, tiles: &Tiles, kind: Kind) {
-        dispatch!(level, simd => self.look_in(simd, picture, tiles, kind));
-    }
-
-    #[inline(always)]
-    fn look_in<S: Simd>(&mut self, simd: S, picture: &Picture<'_>, tiles: &Tiles, kind: Kind) {
-        let &Tiles {
-            half,
-            active,
-            before,
-            ..
-        } = tiles;
-        let (columns, rows) = (
-            f64x4::from_slice(simd, &tiles.columns),
-            f64x4::from_slice(simd, &tiles.rows),
-        );
         self.count = 0;
-        self.half = half;
-        (self.hit, self.miss, self.cubic) = (0, 0, active);
-        let mut left = active;
-        for quarter in 0..2 {
-            if left == 0 || before.is_some_and(|before| before.quarter() != quarter) {
-                continue;
+        self.half = tiles.half;
+        (self.hit, self.miss, self.cubic) = (0, 0, tiles.active);
+        let before = |quarter| tiles.before.unwrap_or(Open::all(quarter));
+        let mut left = tiles.active;
+        for quarter in [0, 1] {
+            let before = before(quarter);
+            if left != 0 && before.quarter() == quarter {
+                let look = Look {
+                    before,
+                    active: left,
+                    beyond: false,
+                };
+                let seen = dispatch!(level, |_simd, four| self
+                    .look_in(four, picture, tiles, look, kind));
+                self.hit |= seen.hit;
+                self.miss |= seen.miss;
+                left &= !seen.sound;
             }
-            let patch = picture.patch_about(columns, rows, half, quarter);
-            let sound = left & patch.sound(picture);
-            if sound == 0 {
-                continue;
-            }
-            left &= !sound;
-            self.turns[quarter] = Turn {
-                across: patch.across().map(Into::into),
-                along: patch.along().map(Into::into),
-            };
-            let before = before.unwrap_or(Open::all(quarter));
-            let mut listed = Listed {
-                group: self,
-                patch: &patch,
-                kind,
-            };
-            let sifted = picture.curves().sift(&patch, sound, before, &mut listed);
-            self.hit |= sifted.hit;
-            self.miss |= sifted.miss;
         }
-        if left != 0 && before.is_none() {
-            left &= !self.look_in_both(picture, columns, rows, half, left);
+        if left != 0 && tiles.before.is_none() {
+            // They are in both quarter turns: which of them are all alike in both?
+            let (mut hit, mut miss) = (left, left);
+            for quarter in [0, 1] {
+                let look = Look {
+                    before: before(quarter),
+                    active: hit | miss,
+                    beyond: true,
+                };
+                let seen = dispatch!(level, |_simd, four| self
+                    .look_in(four, picture, tiles, look, kind));
+                hit &= seen.hit;
+                miss &= seen.miss;
+            }
+            self.hit |= hit;
+            self.miss |= miss;
+            left &= !(hit | miss);
         }
         self.unknown = left;
     }
 
-    /// Looks at tiles in both quarter turns: which of them are all alike.
+    /// Looks at tiles in one quarter turn.
     #[inline(always)]
-    fn look_in_both<T: Real>(
+    fn look_in<T: Four>(
         &mut self,
+        like: T,
         picture: &Picture<'_>,
-        columns: T,
-        rows: T,
-        half: [f64; 2],
-        active: u32,
-    ) -> u32 {
-        let (mut hit, mut miss) = (active, active);
-        for quarter in 0..2 {
-            let patch = picture.patch_about(columns, rows, half, quarter);
-            let sound = (hit | miss) & patch.sound_beyond(picture);
-            let curves = picture.curves();
-            let sifted = curves.sift(&patch, sound, Open::all(quarter), &mut Unlisted);
-            hit &= sifted.hit;
-            miss &= sifted.miss;
+        tiles: &Tiles,
+        look: Look,
+        kind: Kind,
+    ) -> Seen {
+        let (columns, rows) = (like.of(tiles.columns), like.of(tiles.rows));
+        let quarter = look.before.quarter();
+        let patch = picture.patch_about(columns, rows, tiles.half, quarter);
+        let sound = look.active
+            & if look.beyond {
+                patch.sound_beyond(picture)
+            } else {
+                patch.sound(picture)
+            };
+        if sound == 0 {
+            return Seen::default();
         }
-        self.hit |= hit;
-        self.miss |= miss;
-        hit | miss
+        if !look.beyond {
+            self.turns[quarter] = Turn {
+                across: patch.across().map(Into::into),
+                along: patch.along().map(Into::into),
+            };
+        }
+        let mut listed = Listed {
+            group: self,
+            patch: &patch,
+            kind,
+            step: usize::from(!look.beyond),
+        };
+        let Sifted { hit, miss } = picture.sift(&patch, sound, look.before, &mut listed);
+        Seen { sound, hit, miss }
     }
 
     /// The edges that are open over a tile, which is neither hit nor missed nor unknown.
@@ -239,7 +266,8 @@ impl Group {
         size: (usize, usize),
         asked: &mut Asked,
     ) {
-        dispatch!(level, simd => self.draw_in(simd, tile, pixels, stride, size, asked));
+        dispatch!(level, |simd, _four| self
+            .draw_in(simd, tile, pixels, stride, size, asked));
     }
 
     #[inline(always)]
@@ -322,9 +350,11 @@ struct Listed<'a, T> {
     group: &'a mut Group,
     patch: &'a Patch<T>,
     kind: Kind,
+    /// 1, or 0 for edges that are of no interest: there is always room for one more.
+    step: usize,
 }
 
-impl<T: Real + Into<[f64; TILES]>> Listing<T> for Listed<'_, T> {
+impl<T: Four> Listing<T> for Listed<'_, T> {
     #[inline(always)]
     fn list(&mut self, of: EdgeOf, tiles: u32, bent: &Bent<T>) {
         let (cubics, good) = cubics(self.patch, bent, of.edge, self.kind);
@@ -335,16 +365,8 @@ impl<T: Real + Into<[f64; TILES]>> Listing<T> for Listed<'_, T> {
             tiles,
             cubics,
         };
-        self.group.count += 1;
+        self.group.count += self.step;
     }
-}
-
-/// Lists no edge.
-struct Unlisted;
-
-impl<T> Listing<T> for Unlisted {
-    #[inline(always)]
-    fn list(&mut self, _: EdgeOf, _: u32, _: &Bent<T>) {}
 }
 
 /// White bytes where a number's bits are set, the lowest one first.
@@ -366,14 +388,12 @@ const SPREAD: [[u8; 8]; 256] = {
 
 /// An edge's cubics over four tiles, and for which of them it is one.
 #[inline(always)]
-fn cubics<T: Real + Into<[f64; TILES]>>(
+fn cubics<T: Four>(
     patch: &Patch<T>,
     bent: &Bent<T>,
     edge: Edge,
     kind: Kind,
 ) -> ([[f64; TILES]; 4], u32) {
-    /// Of what an edge may be off its tangent in a pixel by the pixel's own bounds. A tile's are wider than these.
-    const SURELY_STRAIGHT: f64 = 0.9 * STRAIGHT;
     /// The share of its terms by which a cubic is off in single precision: its dozen roundings, with room.
     const ROUNDING: f64 = 1.0 / 524_288.0;
     let [half_columns, half_rows] = patch.half();
@@ -382,10 +402,9 @@ fn cubics<T: Real + Into<[f64; TILES]>>(
     let (steep_columns, steep_rows) = (line.per_column.abs(), line.per_row.abs());
     let steep = (steep_columns - turning[0]).larger(steep_rows - turning[1]);
     let off = patch.doubt(bent);
-    let mut good = !(steep * kind.doubt).less(off) & steep.all(0.0).less(steep);
-    if kind.reach > 0.0 {
-        good &= patch.bend_of_pixel(bent).less(steep * SURELY_STRAIGHT);
-    }
+    let good = !(steep * kind.doubt).less(off)
+        & steep.all(0.0).less(steep)
+        & patch.bend_of_pixel(bent).less(steep * kind.bend);
     let terms =
         line.value.abs() + steep_columns * half_columns + steep_rows * half_rows + patch.bend(bent);
     let seen = (steep_columns + turning[0] + steep_rows + turning[1]) * kind.reach;

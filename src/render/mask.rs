@@ -55,6 +55,7 @@ impl Pixels for Hard<'_> {
         reach: 0.0,
         // Measured as the cheapest.
         doubt: 0.1,
+        bend: f64::INFINITY,
         smallest: 4,
     };
 

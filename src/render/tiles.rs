@@ -28,6 +28,8 @@ pub(super) struct Kind {
     /// A tile is drawn from its edges' cubics where what is not cubic of them is below this, in pixels: a
     /// compromise between tiles and pixels to be asked.
     pub(super) doubt: f64,
+    /// How far an edge may be off its tangent over a pixel of such a tile, in pixels.
+    pub(super) bend: f64,
     /// The side of the smallest tiles, in pixels.
     pub(super) smallest: usize,
 }
