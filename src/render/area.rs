@@ -1,19 +1,19 @@
-//! Shares of a pixel's square: on one side of a line, and off several orders' bands.
+//! Shares of a pixel, or of a rectangle that is a part of it: on one side of a line, and off several orders' bands.
 
 use crate::isoradial::{Band, Line, MOST_BANDS};
 use crate::lanes::Real;
 
-/// The share of a square of so many pixels' side on the side `value + per_column dx + per_row dy ≥ 0` of a line, dx and
+/// The share of a rectangle of such sides, in pixels, on the side `value + per_column dx + per_row dy ≥ 0` of a line, dx and
 /// dy from its centre.
 ///
 /// With m and n the larger and the smaller of the two slopes' sizes the smaller part is a triangle, of the area
 /// `(½(m + n) − |value|)²/2mn`, where the line cuts off a corner, and a trapezoid, `½ − |value|/m`, where it does not.
 #[inline(always)]
-fn share_above<T: Real>(line: &Line<T>, side: f64) -> T {
+fn share_above<T: Real>(line: &Line<T>, sides: [f64; 2]) -> T {
     let (value, per_column, per_row) = (
         line.value,
-        line.per_column.abs() * side,
-        line.per_row.abs() * side,
+        line.per_column.abs() * sides[0],
+        line.per_row.abs() * sides[1],
     );
     let (most, least) = (per_column.larger(per_row), per_column.smaller(per_row));
     let (size, reach) = (value.abs(), (most + least) * 0.5);
@@ -25,31 +25,31 @@ fn share_above<T: Real>(line: &Line<T>, side: f64) -> T {
     value.if_less(none, smaller, all - smaller)
 }
 
-/// The share of a square of so many pixels' side that lies in a band, or a little less than none of it through
+/// The share of a rectangle of such sides, in pixels, that lies in a band, or a little less than none of it through
 /// rounding; `like` is any number.
 #[inline(always)]
-pub(super) fn share_of_band<T: Real>(band: &Band<T>, side: f64, like: T) -> T {
+pub(super) fn share_of_band<T: Real>(band: &Band<T>, sides: [f64; 2], like: T) -> T {
     let (none, all) = (like.all(0.0), like.all(1.0));
     let (mut outer, mut inner) = (none, none);
     if let Some(line) = &band.outer {
-        outer = all - share_above(line, side);
+        outer = all - share_above(line, sides);
     }
     if let Some(line) = &band.inner {
-        inner = share_above(line, side);
+        inner = share_above(line, sides);
     }
     all - (outer + inner)
 }
 
-/// The share of a square of so many pixels' side that lies in any of the bands.
+/// The share of a rectangle of such sides, in pixels, that lies in any of the bands.
 ///
 /// What lies off a band is beyond its outer edge or within its inner one, never both: off all bands is the sum, over
 /// one choice of the two for each band, of convex polygons.
-pub(super) fn share_of_union(bands: &[Band], side: f64) -> f64 {
+pub(super) fn share_of_union(bands: &[Band], sides: [f64; 2]) -> f64 {
     let mut partial = [Band::default(); MOST_BANDS];
     let mut count = 0;
     let (mut share, mut sum): (f64, f64) = (0.0, 0.0);
     for band in bands {
-        let of_band = share_of_band(band, side, 0.0);
+        let of_band = share_of_band(band, sides, 0.0);
         if of_band > 0.0 {
             share = share.max(of_band);
             sum += of_band;
@@ -61,40 +61,41 @@ pub(super) fn share_of_union(bands: &[Band], side: f64) -> f64 {
     if count <= 1 || share >= 1.0 {
         return share;
     }
-    let is_apart = |(i, a): (usize, &Band)| partial[..i].iter().all(|b| apart(a, b, side) != 0);
+    let is_apart = |(i, a): (usize, &Band)| partial[..i].iter().all(|b| apart(a, b, sides) != 0);
     if partial.iter().enumerate().all(is_apart) {
         return sum;
     }
-    (1.0 - off(&Polygon::square(side), partial) / (side * side)).max(0.0)
+    (1.0 - off(&Polygon::rectangle(sides), partial) / (sides[0] * sides[1])).max(0.0)
 }
 
 /// A bit for each pixel: whether two bands have nothing in common in its square, for where `g ≤ 0` at the inner edge of
 /// one is `g < 0` at the other's outer edge.
 #[inline(always)]
-pub(super) fn apart<T: Real>(a: &Band<T>, b: &Band<T>, side: f64) -> u32 {
-    within(a.inner, b.outer, side) | within(b.inner, a.outer, side)
+pub(super) fn apart<T: Real>(a: &Band<T>, b: &Band<T>, sides: [f64; 2]) -> u32 {
+    within(a.inner, b.outer, sides) | within(b.inner, a.outer, sides)
 }
 
 #[inline(always)]
-fn within<T: Real>(inner: Option<Line<T>>, outer: Option<Line<T>>, side: f64) -> u32 {
+fn within<T: Real>(inner: Option<Line<T>>, outer: Option<Line<T>>, sides: [f64; 2]) -> u32 {
     let (Some(inner), Some(outer)) = (inner, outer) else {
         return 0;
     };
-    let reach = (outer.per_column - inner.per_column).abs() + (outer.per_row - inner.per_row).abs();
-    let most = outer.value - inner.value + reach * (0.5 * side);
+    let reach = (outer.per_column - inner.per_column).abs() * (0.5 * sides[0])
+        + (outer.per_row - inner.per_row).abs() * (0.5 * sides[1]);
+    let most = outer.value - inner.value + reach;
     most.less(most.all(0.0))
 }
 
-/// The share of a square of so many pixels' side that is on the positive side of `border` and in any of the bands; with
+/// The share of a rectangle of such sides, in pixels, that is on the positive side of `border` and in any of the bands; with
 /// no band, in all of it.
-pub(super) fn share_beside(border: &Line, bands: &[Band], side: f64) -> f64 {
-    let part = Polygon::square(side).above(border);
+pub(super) fn share_beside(border: &Line, bands: &[Band], sides: [f64; 2]) -> f64 {
+    let part = Polygon::rectangle(sides).above(border);
     let off = if bands.is_empty() {
         0.0
     } else {
         off(&part, bands)
     };
-    ((part.area() - off) / (side * side)).max(0.0)
+    ((part.area() - off) / (sides[0] * sides[1])).max(0.0)
 }
 
 /// The area of a polygon that lies off all bands.
@@ -113,21 +114,21 @@ fn off(polygon: &Polygon, bands: &[Band]) -> f64 {
     band.outer.map_or(0.0, |line| beyond(line.opposite())) + band.inner.map_or(0.0, beyond)
 }
 
-/// A convex polygon: a square with some of its corners cut off, each cut by one line more.
+/// A convex polygon: a rectangle with some of its corners cut off, each cut by one line more.
 #[derive(Debug, Clone, Copy)]
 struct Polygon {
     corners: [(f64, f64); MOST],
     count: usize,
 }
 
-/// A square's four, and one more for each order's edge.
+/// A rectangle's four, and one more for each order's edge.
 const MOST: usize = 20;
 
 impl Polygon {
-    fn square(side: f64) -> Self {
-        let half = 0.5 * side;
+    fn rectangle([wide, high]: [f64; 2]) -> Self {
+        let (x, y) = (0.5 * wide, 0.5 * high);
         let mut corners = [(0.0, 0.0); MOST];
-        corners[..4].copy_from_slice(&[(-half, -half), (half, -half), (half, half), (-half, half)]);
+        corners[..4].copy_from_slice(&[(-x, -y), (x, -y), (x, y), (-x, y)]);
         Self { corners, count: 4 }
     }
 
@@ -194,16 +195,16 @@ mod tests {
     }
 
     #[test]
-    fn shares_are_the_clipped_squares_areas() {
-        for line in lines() {
-            let (share, area) = (
-                share_above(&line, 1.0),
-                Polygon::square(1.0).above(&line).area(),
-            );
-            assert!((share - area).abs() < 1e-14, "{share} and {area}: {line:?}");
+    fn shares_are_the_clipped_rectangles_areas() {
+        for sides in [[1.0, 1.0], [0.25, 1.0], [1.0, 1.0 / 64.0]] {
+            for line in lines() {
+                let share = share_above(&line, sides);
+                let area = Polygon::rectangle(sides).above(&line).area() / (sides[0] * sides[1]);
+                assert!((share - area).abs() < 1e-13, "{share} and {area}: {line:?}");
+            }
         }
-        assert_eq!(share_above(&line(0.1, 0.0, 0.0), 1.0), 1.0);
-        assert_eq!(share_above(&line(-0.1, 0.0, 0.0), 1.0), 0.0);
+        assert_eq!(share_above(&line(0.1, 0.0, 0.0), [1.0; 2]), 1.0);
+        assert_eq!(share_above(&line(-0.1, 0.0, 0.0), [1.0; 2]), 0.0);
     }
 
     /// Two and three bands against counting the points of a fine grid.
@@ -253,7 +254,7 @@ mod tests {
                     .filter(|k| inside(place(k % SIDE), place(k / SIDE)))
                     .count();
                 let counted = hits as f64 / f64::from(SIDE * SIDE);
-                let share = share_of_union(&bands, 1.0);
+                let share = share_of_union(&bands, [1.0; 2]);
                 // Each of up to six lines passes through some 300 of the grid's cells, half of which it decides.
                 assert!(
                     (share - counted).abs() < 6e-3,

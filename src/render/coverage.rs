@@ -2,12 +2,12 @@
 //!
 //! # Derivation
 //! Over one pixel an edge is a straight line: where `g`, linear in the pixel's neighbourhood with the value and the
-//! gradient that it has at the centre (see [`Patch`]), is 0. The share on one side of it is known in closed form, so
-//! that a straight edge is drawn exactly, and rings thinner than a pixel keep their light. The disk is the union of its
-//! orders' bands: where edges of several orders share a pixel its square is clipped at all of them.
+//! gradient that it has at the centre (`src/isoradial/picture.rs`), is 0. The share on one side of it is known in closed
+//! form, so that a straight edge is drawn exactly, and rings thinner than a pixel keep their light. The disk is the
+//! union of its orders' bands: where edges of several orders share a pixel its square is clipped at all of them.
 //!
-//! A pixel over which an edge bends, where the whole ring is some pixels across, is cut into four, and those again
-//! where they must be: so are pixels that look at the hole.
+//! A pixel over which an edge bends, where the whole ring is some pixels across, is cut in halves across the way it
+//! bends, and those again where they must be: so are pixels that look at the hole.
 
 use super::area::{apart, share_beside, share_of_band, share_of_union};
 use super::group::{Asked, Group};
@@ -21,10 +21,14 @@ use crate::lanes::{Four, Level, dispatch};
 use crate::scene::View;
 
 /// What is not linear of an edge over a pixel, in pixels, beyond which the pixel is cut up.
-const STRAIGHT: f64 = 0.25;
+const STRAIGHT: f64 = 1.0 / 32.0;
 
-/// How often a pixel is cut at most: into parts of a sixteenth of its side.
-const CUTS: u32 = 4;
+/// The smallest parts that a pixel is cut into where an edge bends, as shares of it.
+const SMALLEST: f64 = 1.0 / 256.0;
+
+/// The same where there is nothing straight, about the hole's direction and from close to the disk's plane: what is left
+/// is what its centre sees.
+const SMALLEST_OF_ALL: f64 = 1.0 / 4096.0;
 
 /// The frame's pixels, row by row from the top, on all threads of the current rayon pool.
 ///
@@ -76,7 +80,7 @@ impl Pixels for Shares<'_> {
 
     fn value(&self, column: usize, row: usize, open: Option<Open>) -> u8 {
         let (left, top) = (column as f64, row as f64);
-        byte(self.share((left, left + 1.0), (top, top + 1.0), open, CUTS))
+        byte(self.share((left, left + 1.0), (top, top + 1.0), open))
     }
 
     fn draw_along(
@@ -139,6 +143,9 @@ impl Edges {
     }
 }
 
+/// A pixel's sides.
+const PIXEL: [f64; 2] = [1.0; 2];
+
 /// How many pixels stand side by side.
 const PIXELS: usize = 4;
 
@@ -190,7 +197,7 @@ impl Place<'_> {
             if let Some(of) = *inner {
                 band.inner = Some(self.picture.tangent(&spot, of));
             }
-            let share = none.larger(share_of_band(&band, 1.0, none));
+            let share = none.larger(share_of_band(&band, PIXEL, none));
             if edges.len() == 1 {
                 return share.into();
             }
@@ -201,7 +208,7 @@ impl Place<'_> {
             for (before, is_partial) in bands[..index].iter().zip(partial) {
                 let both = partial[index] & is_partial;
                 if both != 0 {
-                    overlap |= both & !apart(&band, before, 1.0);
+                    overlap |= both & !apart(&band, before, PIXEL);
                 }
             }
             bands[index] = band;
@@ -215,7 +222,7 @@ impl Place<'_> {
                 for (one, band) in one.iter_mut().zip(&bands[..edges.len()]) {
                     *one = band.one(i);
                 }
-                *share = share_of_union(&one[..edges.len()], 1.0);
+                *share = share_of_union(&one[..edges.len()], PIXEL);
             }
         }
         shares
@@ -250,6 +257,11 @@ impl OpenEdges {
     /// The bands between them, their tangents in the patch's centre.
     fn bands(&self) -> &[Band] {
         &self.bands[..self.count]
+    }
+
+    /// Whether they are their tangents over a rectangle of this area, in pixels.
+    fn are_straight(&self, area: f64) -> bool {
+        self.bend <= STRAIGHT * area.sqrt()
     }
 }
 
@@ -328,12 +340,13 @@ impl<'a> Shares<'a> {
     }
 
     /// The share of a rectangle.
-    fn share(&self, columns: (f64, f64), rows: (f64, f64), open: Option<Open>, cuts: u32) -> f64 {
-        let side = columns.1 - columns.0;
+    fn share(&self, columns: (f64, f64), rows: (f64, f64), open: Option<Open>) -> f64 {
+        let sides = [columns.1 - columns.0, rows.1 - rows.0];
+        let area = sides[0] * sides[1];
         let Some(patch) = self.picture.patch(columns, rows) else {
             return if let Some(share) = self.share_of_both(columns, rows) {
                 share
-            } else if cuts == 0 {
+            } else if area <= SMALLEST_OF_ALL {
                 let middle = |(from, to): (f64, f64)| 0.5 * (from + to);
                 f64::from(super::mask::sees(
                     self.picture.view(),
@@ -341,42 +354,40 @@ impl<'a> Shares<'a> {
                     (middle(columns), middle(rows)),
                 ))
             } else {
-                self.quarters(columns, rows, None, cuts)
+                self.halves(columns, rows, None)
             };
         };
         match self.sift(&patch, open) {
             Seen::All => 1.0,
             Seen::Nothing => 0.0,
-            Seen::Along(edges) if edges.bend <= STRAIGHT * side => {
-                share_of_union(edges.bands(), side)
-            }
+            Seen::Along(edges) if edges.are_straight(area) => share_of_union(edges.bands(), sides),
             // Edges that bend this much may be far from their tangents, and show where no tile lets them.
-            Seen::Along(edges) if cuts == 0 => {
+            Seen::Along(edges) if area <= SMALLEST => {
                 let bundle = Bundle::new(self.picture.view(), columns, rows);
                 let curves = self.picture.curves();
                 match bundle.map_or(Verdict::Mixed, |bundle| curves.verdict(&bundle)) {
                     Verdict::Hit => 1.0,
                     Verdict::Miss => 0.0,
-                    Verdict::Mixed => share_of_union(edges.bands(), side),
+                    Verdict::Mixed => share_of_union(edges.bands(), sides),
                 }
             }
-            Seen::Along(edges) => self.quarters(columns, rows, Some(edges.open), cuts),
+            Seen::Along(edges) => self.halves(columns, rows, Some(edges.open)),
         }
     }
 
     /// The share of a rectangle whose rays meet the plane in both quarter turns, which a straight line divides; if its
     /// edges are straight.
     fn share_of_both(&self, columns: (f64, f64), rows: (f64, f64)) -> Option<f64> {
-        let side = columns.1 - columns.0;
+        let sides = [columns.1 - columns.0, rows.1 - rows.0];
         let border = self.picture.border(columns, rows);
         let mut share = 0.0;
         for (quarter, border) in [border, border.opposite()].into_iter().enumerate() {
             let patch = self.picture.patch_in_quarter(columns, rows, quarter)?;
             share += match self.sift(&patch, None) {
-                Seen::All => share_beside(&border, &[], side),
+                Seen::All => share_beside(&border, &[], sides),
                 Seen::Nothing => 0.0,
-                Seen::Along(edges) if edges.bend <= STRAIGHT * side => {
-                    share_beside(&border, edges.bands(), side)
+                Seen::Along(edges) if edges.are_straight(sides[0] * sides[1]) => {
+                    share_beside(&border, edges.bands(), sides)
                 }
                 Seen::Along(_) => return None,
             };
@@ -384,21 +395,15 @@ impl<'a> Shares<'a> {
         Some(share.min(1.0))
     }
 
-    /// The share of a rectangle, from its four quarters'.
-    fn quarters(
-        &self,
-        columns: (f64, f64),
-        rows: (f64, f64),
-        open: Option<Open>,
-        cuts: u32,
-    ) -> f64 {
+    /// The share of a rectangle, from its two halves'.
+    fn halves(&self, columns: (f64, f64), rows: (f64, f64), open: Option<Open>) -> f64 {
         let (column, row) = (0.5 * (columns.0 + columns.1), 0.5 * (rows.0 + rows.1));
-        let mut sum = 0.0;
-        for rows in [(rows.0, row), (row, rows.1)] {
-            for columns in [(columns.0, column), (column, columns.1)] {
-                sum += self.share(columns, rows, open, cuts - 1);
-            }
-        }
-        0.25 * sum
+        let sum = if self.picture.is_wide(columns, rows) {
+            self.share((columns.0, column), rows, open)
+                + self.share((column, columns.1), rows, open)
+        } else {
+            self.share(columns, (rows.0, row), open) + self.share(columns, (row, rows.1), open)
+        };
+        0.5 * sum
     }
 }
