@@ -10,7 +10,8 @@
 //! bends, and those again where they must be: so are pixels that look at the hole.
 
 use super::area::{apart, share_beside, share_of_band, share_of_union};
-use super::group::{Asked, Group};
+use super::blocks::{Asked, Canvas};
+use super::group::Group;
 use super::tiles::{Kind, Pixels, fill_frame};
 use super::{RenderError, blank};
 use crate::isoradial::{
@@ -89,8 +90,7 @@ impl Pixels for Shares<'_> {
         (group, tile): (&Group, usize),
         corner: (usize, usize),
         asked: &Asked,
-        pixels: &mut [u8],
-        stride: usize,
+        canvas: &mut Canvas<'_>,
     ) {
         let mut edges = Edges::new(group.open(tile).quarter());
         for of in group.edges(tile) {
@@ -104,8 +104,7 @@ impl Pixels for Shares<'_> {
         dispatch!(level, |_simd, four| place.draw(
             four,
             asked.pixels(),
-            pixels,
-            stride
+            canvas
         ));
     }
 }
@@ -159,7 +158,7 @@ struct Place<'a> {
 impl Place<'_> {
     /// Draws some of its pixels.
     #[inline(always)]
-    fn draw<T: Four>(&self, like: T, asked: &[(u8, u8)], pixels: &mut [u8], stride: usize) {
+    fn draw<T: Four>(&self, like: T, asked: &[(u8, u8)], canvas: &mut Canvas<'_>) {
         for some in asked.chunks(PIXELS) {
             let (mut columns, mut rows) = ([0.0; PIXELS], [0.0; PIXELS]);
             for i in 0..PIXELS {
@@ -170,7 +169,7 @@ impl Place<'_> {
             }
             let shares = self.shares(like.of(columns), like.of(rows));
             for (&(i, j), share) in some.iter().zip(shares) {
-                pixels[usize::from(j) * stride + usize::from(i)] = byte(share);
+                canvas.pixels[usize::from(j) * canvas.stride + usize::from(i)] = byte(share);
             }
         }
     }

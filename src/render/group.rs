@@ -1,15 +1,8 @@
 //! Four tiles of one size side by side: which of them are all disk or all sky, which edges are open over the others, and
-//! whether those are cubics there.
-//!
-//! A tile is drawn from its edges' cubics where these are right to a small share of a pixel: in each pixel's centre
-//! an edge's cubic is compared with what it may be off by, and with how far the pixel looks to either side. What
-//! decides nothing are the pixels along the edges, which are asked. The comparison is in single precision, many pixels
-//! side by side; its rounding is part of the doubt.
+//! whether those are cubics there. Such a tile is [drawn](super::blocks).
 
-use fearless_simd::{Simd, SimdBase, f32x8};
-
-use super::mask::WHITE;
-use super::tiles::{Kind, TILE};
+use super::blocks::{Cubic, Drawing};
+use super::tiles::Kind;
 use crate::isoradial::{Bent, Edge, EdgeOf, Listing, MOST_EDGES, Open, Patch, Picture, Sifted};
 use crate::lanes::{Four, Level, dispatch};
 
@@ -45,7 +38,7 @@ pub(super) struct Group {
     edges: [GroupEdge; 2 * MOST_EDGES + 1],
     count: usize,
     /// In each quarter turn.
-    turns: [Turn; 2],
+    turns: [Turns; 2],
     half: [f64; 2],
 }
 
@@ -55,18 +48,8 @@ struct GroupEdge {
     of: EdgeOf,
     quarter: usize,
     tiles: u32,
-    /// Of each tile: its value in the centre, its slopes along columns and rows, and half its bend; as multiples of what
-    /// the edge may be off by, positive within its band.
+    /// Of each tile: the parts of its [`Cubic`].
     cubics: [[f64; TILES]; 4],
-}
-
-/// One of its cubics: `value + per_column dx + per_row dy − half_bend` times what [`Turn`] tells.
-#[derive(Debug, Clone, Copy, Default)]
-struct Cubic {
-    value: f32,
-    per_column: f32,
-    per_row: f32,
-    half_bend: f32,
 }
 
 /// What is asked of four tiles.
@@ -91,46 +74,11 @@ struct Seen {
     miss: u32,
 }
 
-/// How rays turn over each tile, for its cubics: `(across·d)² (1 − along·d)`.
+/// How rays turn over each tile: s∂θ and ∂s/s, for each pixel to the right and downwards.
 #[derive(Debug, Clone, Copy, Default)]
-struct Turn {
+struct Turns {
     across: [[f64; TILES]; 2],
     along: [[f64; TILES]; 2],
-}
-
-impl Cubic {
-    fn of(edge: &GroupEdge, tile: usize) -> Self {
-        let [value, per_column, per_row, half_bend] = edge.cubics.map(|four| four[tile] as f32);
-        Self {
-            value,
-            per_column,
-            per_row,
-            half_bend,
-        }
-    }
-}
-
-/// The pixels of a tile that are to be asked, each its column and its row in the tile.
-#[derive(Debug)]
-pub(super) struct Asked {
-    pixels: [(u8, u8); TILE * TILE],
-    count: usize,
-    /// The tile's edges, each with whether it is another piece's than the one before.
-    edges: [(bool, Cubic); MOST_EDGES],
-}
-
-impl Asked {
-    pub(super) fn new() -> Self {
-        Self {
-            pixels: [(0, 0); TILE * TILE],
-            count: 0,
-            edges: [(false, Cubic::default()); MOST_EDGES],
-        }
-    }
-
-    pub(super) fn pixels(&self) -> &[(u8, u8)] {
-        &self.pixels[..self.count]
-    }
 }
 
 impl Group {
@@ -151,7 +99,7 @@ impl Group {
             cubic: 0,
             edges: [edge; 2 * MOST_EDGES + 1],
             count: 0,
-            turns: [Turn::default(); 2],
+            turns: [Turns::default(); 2],
             half: [0.0; 2],
         }
     }
@@ -222,7 +170,7 @@ impl Group {
             return Seen::default();
         }
         if !look.beyond {
-            self.turns[quarter] = Turn {
+            self.turns[quarter] = Turns {
                 across: patch.across().map(Into::into),
                 along: patch.along().map(Into::into),
             };
@@ -255,93 +203,26 @@ impl Group {
             .filter(move |edge| edge.tiles & (1 << tile) != 0)
     }
 
-    /// Draws a tile whose edges are cubics: white pixels into `rows`, those along the edges into `asked`. The first
-    /// `size` columns and rows of it are in the picture.
-    pub(super) fn draw(
-        &self,
-        level: Level,
-        tile: usize,
-        pixels: &mut [u8],
-        stride: usize,
-        size: (usize, usize),
-        asked: &mut Asked,
-    ) {
-        dispatch!(level, |simd, _four| self
-            .draw_in(simd, tile, pixels, stride, size, asked));
-    }
-
-    #[inline(always)]
-    fn draw_in<S: Simd>(
-        &self,
-        simd: S,
-        tile: usize,
-        pixels: &mut [u8],
-        stride: usize,
-        (width, height): (usize, usize),
-        asked: &mut Asked,
-    ) {
-        let Asked {
-            pixels: along,
-            count: found,
-            edges,
-        } = asked;
-        let mut count = 0;
-        let mut last = None;
-        for edge in self.edges_of(tile) {
-            edges[count] = (last != Some(edge.of.piece), Cubic::of(edge, tile));
-            last = Some(edge.of.piece);
-            count += 1;
-        }
-        let edges = &edges[..count];
-        let half = self.half.map(|half| half as f32);
+    /// What is drawn of a tile whose edges are cubics.
+    pub(super) fn drawing(&self, tile: usize) -> Drawing {
         let quarter = self.edges_of(tile).next().map_or(0, |edge| edge.quarter);
-        let [right, down] = self.turns[quarter].across.map(|four| four[tile] as f32);
-        let [farther_right, farther_down] = self.turns[quarter].along.map(|four| four[tile] as f32);
-        let steps = f32x8::from_slice(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
-        let (one, minus_one) = (f32x8::splat(simd, 1.0), f32x8::splat(simd, -1.0));
-        *found = 0;
-        for j in 0..height {
-            let dy = j as f32 + 0.5 - half[1];
-            let row = &mut pixels[j * stride..][..width];
-            for (block, row) in row.chunks_mut(8).enumerate() {
-                let first = 8 * block;
-                let dx = steps + (first as f32 + 0.5 - half[0]);
-                let across = dx * right + dy * down;
-                let bend = across * across * (-(dx * farther_right) + (1.0 - dy * farther_down));
-                // The most of the bands, each of which is the least of its edges.
-                let mut most = f32x8::splat(simd, f32::NEG_INFINITY);
-                let mut least = most;
-                for (new, edge) in edges {
-                    let value = edge.value + dy * edge.per_row;
-                    let g = dx * edge.per_column + value - bend * edge.half_bend;
-                    if *new {
-                        most = simd.max_f32x8(most, least);
-                        least = g;
-                    } else {
-                        least = simd.min_f32x8(least, g);
-                    }
-                }
-                most = simd.max_f32x8(most, least);
-                let bits = (1_u32 << row.len()) - 1;
-                let white = simd.to_bitmask_mask32x8(simd.simd_ge_f32x8(most, one)) as u32 & bits;
-                let some =
-                    simd.to_bitmask_mask32x8(simd.simd_ge_f32x8(most, minus_one)) as u32 & bits;
-                if let (0xff, Ok(row)) = (bits, <&mut [u8; 8]>::try_from(&mut *row)) {
-                    *row = SPREAD[white as usize];
-                } else if white != 0 {
-                    for (pixel, white) in row.iter_mut().zip(SPREAD[white as usize]) {
-                        *pixel = white;
-                    }
-                }
-                let mut unsure = some & !white;
-                while unsure != 0 {
-                    let i = unsure.trailing_zeros();
-                    unsure &= unsure - 1;
-                    along[*found] = ((first as u32 + i) as u8, j as u8);
-                    *found += 1;
-                }
-            }
+        let turns = &self.turns[quarter];
+        let mut drawing = Drawing::new(
+            self.half.map(|half| half as f32),
+            turns.across.map(|four| four[tile] as f32),
+            turns.along.map(|four| four[tile] as f32),
+        );
+        for edge in self.edges_of(tile) {
+            let [value, per_column, per_row, half_bend] = edge.cubics.map(|four| four[tile] as f32);
+            let cubic = Cubic {
+                value,
+                per_column,
+                per_row,
+                half_bend,
+            };
+            drawing.push(edge.of.piece, cubic);
         }
+        drawing
     }
 }
 
@@ -368,23 +249,6 @@ impl<T: Four> Listing<T> for Listed<'_, T> {
         self.group.count += self.step;
     }
 }
-
-/// White bytes where a number's bits are set, the lowest one first.
-const SPREAD: [[u8; 8]; 256] = {
-    let mut spread = [[0; 8]; 256];
-    let mut i = 0;
-    while i < 256 {
-        let mut bit = 0;
-        while bit < 8 {
-            if i & (1 << bit) != 0 {
-                spread[i][bit] = WHITE;
-            }
-            bit += 1;
-        }
-        i += 1;
-    }
-    spread
-};
 
 /// An edge's cubics over four tiles, and for which of them it is one.
 #[inline(always)]

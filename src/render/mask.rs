@@ -1,7 +1,8 @@
 //! Frames with hard edges: white where a pixel's centre sees the disk, two comparisons a pixel and order, and those only
 //! along the disk's edges.
 
-use super::group::{Asked, Group};
+use super::blocks::{Asked, Canvas};
+use super::group::Group;
 use super::tiles::{Kind, Pixels, fill_frame};
 use super::{RenderError, blank, each_pixel};
 use crate::isoradial::{Isoradials, Open};
@@ -74,12 +75,11 @@ impl Pixels for Hard<'_> {
         _: (&Group, usize),
         (left, top): (usize, usize),
         asked: &Asked,
-        pixels: &mut [u8],
-        stride: usize,
+        canvas: &mut Canvas<'_>,
     ) {
         for &(i, j) in asked.pixels() {
             let (i, j) = (usize::from(i), usize::from(j));
-            pixels[j * stride + i] = self.value(left + i, top + j, None);
+            canvas.pixels[j * canvas.stride + i] = self.value(left + i, top + j, None);
         }
     }
 }

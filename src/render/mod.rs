@@ -2,6 +2,7 @@
 //! of its square that the disk covers ([`coverage`]).
 
 mod area;
+mod blocks;
 pub mod coverage;
 mod group;
 pub mod mask;

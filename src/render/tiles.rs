@@ -7,8 +7,9 @@
 use rayon::prelude::*;
 
 use super::RenderError;
+use super::blocks::{Asked, Canvas};
 use super::coverage::Shares;
-use super::group::{Asked, Group, TILES, Tiles};
+use super::group::{Group, TILES, Tiles};
 use super::mask::{Hard, WHITE};
 use crate::isoradial::{Bundle, Isoradials, Open, Picture, Verdict};
 use crate::lanes::{Level, level};
@@ -17,16 +18,13 @@ use crate::scene::View;
 /// The side of the largest tiles, in pixels.
 pub(super) const TILE: usize = 64;
 
-/// The side of the largest tiles that are drawn from their edges' cubics: of larger ones most is no edge.
-const DRAWN: usize = 16;
-
 /// How a frame's pixels look at their edges.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Kind {
     /// How far from its centre a pixel looks to either side, in pixels: 0 for what its centre sees.
     pub(super) reach: f64,
-    /// A tile is drawn from its edges' cubics where what is not cubic of them is below this, in pixels: a
-    /// compromise between tiles and pixels to be asked.
+    /// A tile is drawn where what of its edges is not cubic is below this, in pixels: a compromise between tiles and
+    /// pixels to be asked.
     pub(super) doubt: f64,
     /// How far an edge may be off its tangent over a pixel of such a tile, in pixels.
     pub(super) bend: f64,
@@ -42,16 +40,14 @@ pub(super) trait Pixels: Sync {
     /// The value of the pixel (column, row). `open` are edges among which are all that are open over it.
     fn value(&self, column: usize, row: usize, open: Option<Open>) -> u8;
 
-    /// Draws the pixels of a tile that are to be asked, along its edges: into `pixels`, from the tile's corner `corner`
-    /// on.
+    /// Draws the pixels of a tile that are to be asked, along its edges; `corner` is the tile's in the picture.
     fn draw_along(
         &self,
         level: Level,
         group: (&Group, usize),
         corner: (usize, usize),
         asked: &Asked,
-        pixels: &mut [u8],
-        stride: usize,
+        canvas: &mut Canvas<'_>,
     );
 }
 
@@ -169,7 +165,7 @@ impl<P: Pixels> Filler<'_, P> {
                 band.whiten(tile);
             } else if is(unknown) {
                 split[i] = self.fill_bundle(band, tile).then_some(None);
-            } else if is(cubic) && side <= DRAWN {
+            } else if is(cubic) {
                 self.draw(band, tile, i);
             } else {
                 split[i] = Some(Some(band.group.open(i)));
@@ -216,28 +212,19 @@ impl<P: Pixels> Filler<'_, P> {
         self.fill(band, corners, half, open);
     }
 
-    /// Draws a tile from its edges' cubics, and asks the pixels along them.
+    /// Draws a tile whose edges are cubics, and asks the pixels along them.
     fn draw(&self, band: &mut Band<'_>, tile: Tile, index: usize) {
         let first = tile.top * band.stride + tile.left;
-        let (pixels, group) = (&mut band.pixels[first..], &band.group);
-        let size = (tile.width, tile.height);
-        group.draw(
-            self.level,
-            index,
-            pixels,
-            band.stride,
-            size,
-            &mut band.asked,
-        );
-        let corner = (tile.left, band.first + tile.top);
-        self.pixels.draw_along(
-            self.level,
-            (group, index),
-            corner,
-            &band.asked,
-            pixels,
-            band.stride,
-        );
+        let mut canvas = Canvas {
+            pixels: &mut band.pixels[first..],
+            stride: band.stride,
+            size: (tile.width, tile.height),
+        };
+        let (group, corner) = (&band.group, (tile.left, band.first + tile.top));
+        let drawing = group.drawing(index);
+        drawing.draw(self.level, &mut canvas, &mut band.asked);
+        self.pixels
+            .draw_along(self.level, (group, index), corner, &band.asked, &mut canvas);
     }
 
     /// Asks every pixel of a tile.
@@ -278,11 +265,25 @@ impl Band<'_> {
     }
 
     fn whiten(&mut self, tile: Tile) {
+        // A tile's rows are short: as many pixels as it mostly has are stored sooner than a function is called.
+        match tile.width {
+            64 => self.whiten_rows::<64>(tile),
+            32 => self.whiten_rows::<32>(tile),
+            16 => self.whiten_rows::<16>(tile),
+            8 => self.whiten_rows::<8>(tile),
+            _ => {
+                for row in tile.top..tile.top + tile.height {
+                    self.row(row, tile.left, tile.width).fill(WHITE);
+                }
+            }
+        }
+    }
+
+    fn whiten_rows<const WIDTH: usize>(&mut self, tile: Tile) {
         for row in tile.top..tile.top + tile.height {
-            // A tile's rows are short: sixteen pixels at once are filled sooner than a function is called.
-            let (sixteens, rest) = self.row(row, tile.left, tile.width).as_chunks_mut::<16>();
-            sixteens.fill([WHITE; 16]);
-            rest.fill(WHITE);
+            if let Some(row) = self.row(row, tile.left, WIDTH).first_chunk_mut() {
+                *row = [WHITE; WIDTH];
+            }
         }
     }
 }
@@ -323,8 +324,7 @@ impl<const SMOOTH: bool> Pixels for Unasked<SMOOTH> {
         _: (&Group, usize),
         _: (usize, usize),
         _: &Asked,
-        _: &mut [u8],
-        _: usize,
+        _: &mut Canvas<'_>,
     ) {
     }
 }
