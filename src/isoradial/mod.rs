@@ -94,6 +94,7 @@ impl EdgeError {
 /// The curves of both edges of the disk for every order that the picture shows.
 #[derive(Debug, Clone)]
 pub struct Isoradials {
+    sight: Sight,
     critical: f64,
     /// Of each quarter turn, order by order, those that the picture shows.
     quarters: [Vec<Piece>; 2],
@@ -142,6 +143,7 @@ impl Isoradials {
     /// derives.
     pub fn new(sight: &Sight, angles: &impl SweptAngles) -> Self {
         let mut curves = Self {
+            sight: *sight,
             critical: sight.critical(),
             quarters: [Vec::new(), Vec::new()],
             orders: Vec::new(),
@@ -180,6 +182,12 @@ impl Isoradials {
             }
         }
         curves
+    }
+
+    /// Whether these curves will do for the picture of `sight` too, as they are: those of the same camera radius and
+    /// disk that show more or smaller pixels.
+    pub fn serves(&self, sight: &Sight) -> bool {
+        self.sight.and(sight) == Some(self.sight)
     }
 
     /// κ of the critical ray.

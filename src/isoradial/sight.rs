@@ -78,6 +78,22 @@ impl Sight {
         }
     }
 
+    /// What curves are drawn for that serve two pictures; none if these are not of one camera radius and one disk.
+    pub fn and(&self, other: &Self) -> Option<Self> {
+        let of = |sight: &Self| (sight.u0, sight.slope_scale, sight.u_inner, sight.u_outer);
+        (of(self) == of(other)).then(|| Self {
+            pixel: self.pixel.min(other.pixel),
+            axis: self.axis.max(other.axis),
+            corner: self.corner.max(other.corner),
+            window: Bundle {
+                kappa: hull(self.window.kappa, other.window.kappa),
+                cotangent: hull(self.window.cotangent, other.window.cotangent),
+            },
+            tolerance: self.tolerance.min(other.tolerance),
+            ..*self
+        })
+    }
+
     /// κ of the critical ray: towards the hole from outside the photon sphere, away from it from inside.
     pub fn critical(&self) -> f64 {
         let size = critical_slope(self.u0) / self.slope_scale;
@@ -239,6 +255,11 @@ fn window(bundle: Option<Bundle>, view: &View, axis: f64, corner: f64) -> Bundle
         kappa: (shifted(low, PAD), shifted(high, -PAD)),
         cotangent: (shifted(least, PAD), shifted(greatest, -PAD)),
     }
+}
+
+/// The least interval about two.
+fn hull(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
+    (a.0.min(b.0), a.1.max(b.1))
 }
 
 /// The angle between a ray of cotangent κ and the hole's direction, in [0, π].

@@ -12,7 +12,7 @@
 use super::area::{apart, share_beside, share_of_band, share_of_union};
 use super::blocks::{Asked, Canvas};
 use super::group::Group;
-use super::tiles::{Kind, Pixels, fill_frame};
+use super::tiles::{Kind, Pixels, Threads, fill_frame};
 use super::{RenderError, blank};
 use crate::isoradial::{
     Band, Bent, Bundle, Edge, EdgeOf, Isoradials, Line, Listing, MOST_BANDS, Open, Patch, Picture,
@@ -41,7 +41,7 @@ pub fn render(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> 
     Ok(pixels)
 }
 
-/// The frame, drawn into a caller's buffer: row j begins at `j stride`, whatever lies between the rows' ends is left
+/// The frame, on all threads of the current rayon pool, drawn into a caller's buffer: row j begins at `j stride`, whatever lies between the rows' ends is left
 /// as it is. Nothing is allocated.
 ///
 /// # Errors
@@ -52,7 +52,19 @@ pub fn render_into(
     pixels: &mut [u8],
     stride: usize,
 ) -> Result<(), RenderError> {
-    fill_frame(view, curves, Shares::new(view, curves), pixels, stride)
+    render_on(view, curves, Threads::All, pixels, stride)
+}
+
+/// The same, on some threads.
+pub(super) fn render_on(
+    view: &View,
+    curves: &Isoradials,
+    threads: Threads,
+    pixels: &mut [u8],
+    stride: usize,
+) -> Result<(), RenderError> {
+    let kind = Shares::new(view, curves);
+    fill_frame(view, curves, kind, threads, pixels, stride)
 }
 
 /// The same pixels, each found by itself.

@@ -3,7 +3,7 @@
 
 use super::blocks::{Asked, Canvas};
 use super::group::Group;
-use super::tiles::{Kind, Pixels, fill_frame};
+use super::tiles::{Kind, Pixels, Threads, fill_frame};
 use super::{RenderError, blank, each_pixel};
 use crate::isoradial::{Isoradials, Open};
 use crate::lanes::Level;
@@ -22,7 +22,7 @@ pub fn render(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> 
     Ok(pixels)
 }
 
-/// The frame, drawn into a caller's buffer: row j begins at `j stride`, whatever lies between the rows' ends is left
+/// The frame, on all threads of the current rayon pool, drawn into a caller's buffer: row j begins at `j stride`, whatever lies between the rows' ends is left
 /// as it is. Nothing is allocated.
 ///
 /// # Errors
@@ -33,7 +33,19 @@ pub fn render_into(
     pixels: &mut [u8],
     stride: usize,
 ) -> Result<(), RenderError> {
-    fill_frame(view, curves, Hard { view, curves }, pixels, stride)
+    render_on(view, curves, Threads::All, pixels, stride)
+}
+
+/// The same, on some threads.
+pub(super) fn render_on(
+    view: &View,
+    curves: &Isoradials,
+    threads: Threads,
+    pixels: &mut [u8],
+    stride: usize,
+) -> Result<(), RenderError> {
+    let kind = Hard { view, curves };
+    fill_frame(view, curves, kind, threads, pixels, stride)
 }
 
 /// The same pixels, each asked by itself.

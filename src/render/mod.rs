@@ -2,6 +2,7 @@
 //! of its square that the disk covers ([`coverage`]).
 
 mod area;
+pub mod batch;
 mod blocks;
 pub mod coverage;
 mod group;

@@ -83,7 +83,16 @@ struct Tile {
     height: usize,
 }
 
-/// Fills a frame, on all threads of the current rayon pool: row j begins at `j stride` of `pixels`.
+/// Who fills a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Threads {
+    /// All threads of the current rayon pool.
+    All,
+    /// This one.
+    This,
+}
+
+/// Fills a frame: row j begins at `j stride` of `pixels`.
 ///
 /// # Errors
 /// [`RenderError::Buffer`] for a stride or a buffer that the frame does not fit.
@@ -91,6 +100,7 @@ pub(super) fn fill_frame<P: Pixels>(
     view: &View,
     curves: &Isoradials,
     kind: P,
+    threads: Threads,
     pixels: &mut [u8],
     stride: usize,
 ) -> Result<(), RenderError> {
@@ -109,25 +119,27 @@ pub(super) fn fill_frame<P: Pixels>(
         picture: Picture::new(view, curves),
         pixels: kind,
     };
-    pixels[..needed]
-        .par_chunks_mut(stride * TILE)
-        .enumerate()
-        .for_each(|(index, pixels)| {
-            let first = index * TILE;
-            let mut band = Band {
-                pixels,
-                stride,
-                first,
-                size: (width, TILE.min(height - first)),
-                group: Group::new(),
-                asked: Asked::new(),
-            };
-            band.blacken();
-            for left in (0..width).step_by(TILES * TILE) {
-                let corners = [0, 1, 2, 3].map(|i| (left + i * TILE, 0));
-                filler.fill(&mut band, corners, TILE, None);
-            }
-        });
+    let band = |(index, pixels)| {
+        let first = index * TILE;
+        let mut band = Band {
+            pixels,
+            stride,
+            first,
+            size: (width, TILE.min(height - first)),
+            group: Group::new(),
+            asked: Asked::new(),
+        };
+        band.blacken();
+        for left in (0..width).step_by(TILES * TILE) {
+            let corners = [0, 1, 2, 3].map(|i| (left + i * TILE, 0));
+            filler.fill(&mut band, corners, TILE, None);
+        }
+    };
+    let (pixels, rows) = (&mut pixels[..needed], stride * TILE);
+    match threads {
+        Threads::All => pixels.par_chunks_mut(rows).enumerate().for_each(band),
+        Threads::This => pixels.chunks_mut(rows).enumerate().for_each(band),
+    }
     Ok(())
 }
 
@@ -302,9 +314,9 @@ pub fn cull(
 ) -> Result<(), RenderError> {
     let stride = view.width() as usize;
     if smooth {
-        fill_frame(view, curves, Unasked::<true>, pixels, stride)
+        fill_frame(view, curves, Unasked::<true>, Threads::All, pixels, stride)
     } else {
-        fill_frame(view, curves, Unasked::<false>, pixels, stride)
+        fill_frame(view, curves, Unasked::<false>, Threads::All, pixels, stride)
     }
 }
 

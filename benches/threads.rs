@@ -1,0 +1,88 @@
+//! One thread and two: a frame's tiles shared out, and a batch's frames.
+//!
+//! `cargo bench --bench threads`
+
+mod interleaved;
+
+use darkness::isoradial::{Isoradials, Sight};
+use darkness::orbit::exact::Exact;
+use darkness::render::batch::Batch;
+use darkness::render::{RenderError, coverage, mask};
+use darkness::scene::{Scene, View};
+use interleaved::{Contender, compare};
+
+/// How many frames are drawn at once.
+const FRAMES: usize = 24;
+
+fn main() {
+    let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let (Ok(one), Ok(two)) = (pool(1), pool(2)) else {
+        return;
+    };
+    for (width, height) in [(1920, 1080), (7680, 4320)] {
+        let scene = Scene::builtin("classic").and_then(|scene| scene.with_size(width, height).ok());
+        let Some(scene) = scene else {
+            return;
+        };
+        let view = View::new(&scene);
+        let curves = Isoradials::new(&Sight::new(&scene, &view, scene.tolerance()), &Exact);
+        let pixels = width as usize * height as usize;
+        for antialias in [false, true] {
+            let (mut first, mut second) = (vec![0_u8; pixels], vec![0_u8; pixels]);
+            let draw = |frame: &mut [u8]| {
+                let drawn = if antialias {
+                    coverage::render_into(&view, &curves, frame, width as usize)
+                } else {
+                    mask::render_into(&view, &curves, frame, width as usize)
+                };
+                drawn.map_or(0.0, |()| f64::from(frame[pixels / 2]))
+            };
+            let edges = if antialias { "smooth" } else { "hard" };
+            compare(
+                &format!("classic, {width} × {height}, {edges} edges, a frame, time per pixel"),
+                pixels,
+                51,
+                &mut [
+                    Contender {
+                        name: "one thread",
+                        run: Box::new(|| one.install(|| draw(&mut first))),
+                    },
+                    Contender {
+                        name: "two threads",
+                        run: Box::new(|| two.install(|| draw(&mut second))),
+                    },
+                ],
+            );
+            if width > 1920 {
+                continue;
+            }
+            let views = [view; FRAMES];
+            let (alone, side_by_side) = (
+                Batch::new(&curves, antialias),
+                Batch::new(&curves, antialias),
+            );
+            let draw = |batch: &Batch<'_>| {
+                let drawn = batch.draw(&views, |_, frame| {
+                    std::hint::black_box(frame);
+                    Ok::<_, RenderError>(())
+                });
+                drawn.map_or(0.0, |()| FRAMES as f64)
+            };
+            compare(
+                &format!("the same, {FRAMES} frames, time per frame"),
+                FRAMES,
+                21,
+                &mut [
+                    Contender {
+                        name: "one thread",
+                        run: Box::new(|| one.install(|| draw(&alone))),
+                    },
+                    Contender {
+                        name: "two threads",
+                        run: Box::new(|| two.install(|| draw(&side_by_side))),
+                    },
+                ],
+            );
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! Guards against frames that take memory each: once warm, none does.
+#![expect(unsafe_code, reason = "an allocator that counts")]
+
+use core::alloc::{GlobalAlloc, Layout};
+use core::sync::atomic::{AtomicU64, Ordering};
+use std::alloc::System;
+
+use darkness::isoradial::{Isoradials, Sight};
+use darkness::orbit::exact::Exact;
+use darkness::render::batch::Batch;
+use darkness::render::{RenderError, coverage, mask};
+use darkness::scene::{Scene, View};
+
+struct Counting;
+
+static COUNT: AtomicU64 = AtomicU64::new(0);
+
+// SAFETY: all is the system's allocator's.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: as the caller's.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: as the caller's.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// How often memory was asked for meanwhile.
+fn count(work: impl FnOnce()) -> u64 {
+    let before = COUNT.load(Ordering::Relaxed);
+    work();
+    COUNT.load(Ordering::Relaxed) - before
+}
+
+// One test: the count is the whole process's.
+#[test]
+fn frames_take_no_memory_once_warm() {
+    assert_eq!(count(|| drop(std::hint::black_box(vec![1_u8; 100]))), 1);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
+    pool.unwrap().install(|| {
+        for name in ["classic", "edge-on", "photon-ring"] {
+            let scene = Scene::builtin(name).unwrap().with_size(640, 360).unwrap();
+            let view = View::new(&scene);
+            let curves = Isoradials::new(&Sight::new(&scene, &view, scene.tolerance()), &Exact);
+            let mut pixels = vec![0; 640 * 360];
+            let mut draw = |frames| {
+                for _ in 0..frames {
+                    mask::render_into(&view, &curves, &mut pixels, 640).unwrap();
+                    coverage::render_into(&view, &curves, &mut pixels, 640).unwrap();
+                }
+            };
+            draw(1);
+            assert_eq!(count(|| draw(50)), 0, "{name}");
+
+            let batch = Batch::new(&curves, true);
+            let many = [view; 100];
+            let draw = || {
+                let drawn = batch.draw(&many, |_, _| Ok::<_, RenderError>(()));
+                drawn.unwrap();
+            };
+            draw();
+            // A frame for each thread that the first time had none to spare.
+            let taken = count(draw);
+            assert!(taken <= 2, "{name}: {taken} times over 100 frames");
+        }
+    });
+}
