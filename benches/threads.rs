@@ -10,15 +10,42 @@ use darkness::render::batch::Batch;
 use darkness::render::{RenderError, coverage, mask};
 use darkness::scene::{Scene, View};
 use interleaved::{Contender, compare};
+use rayon::prelude::*;
 
 /// How many frames are drawn at once.
 const FRAMES: usize = 24;
+
+/// As much work as a frame, without any memory.
+fn arithmetic(seed: usize) -> f64 {
+    let mut x = seed as f64 + 0.5;
+    for _ in 0..100_000 {
+        x = (x * x + 1.0).sqrt() - 0.5 * x;
+    }
+    x
+}
 
 fn main() {
     let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let (Ok(one), Ok(two)) = (pool(1), pool(2)) else {
         return;
     };
+    // What two threads of this machine are worth, when nothing but registers is shared out.
+    let work = || (0..FRAMES).into_par_iter().map(arithmetic).sum();
+    compare(
+        "arithmetic alone, time per share",
+        FRAMES,
+        51,
+        &mut [
+            Contender {
+                name: "one thread",
+                run: Box::new(|| one.install(work)),
+            },
+            Contender {
+                name: "two threads",
+                run: Box::new(|| two.install(work)),
+            },
+        ],
+    );
     for (width, height) in [(1920, 1080), (7680, 4320)] {
         let scene = Scene::builtin("classic").and_then(|scene| scene.with_size(width, height).ok());
         let Some(scene) = scene else {

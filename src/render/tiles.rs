@@ -137,7 +137,11 @@ pub(super) fn fill_frame<P: Pixels>(
     };
     let (pixels, rows) = (&mut pixels[..needed], stride * TILE);
     match threads {
-        Threads::All => pixels.par_chunks_mut(rows).enumerate().for_each(band),
+        Threads::All => {
+            // A few bands have most of the edges: each may be taken by whoever has nothing to do.
+            let bands = pixels.par_chunks_mut(rows).enumerate().with_max_len(1);
+            bands.for_each(band);
+        }
         Threads::This => pixels.chunks_mut(rows).enumerate().for_each(band),
     }
     Ok(())
