@@ -129,7 +129,11 @@ impl Picture<'_> {
 
     /// Where in a rectangle the rays meet the plane at a quarter turn, D = 0: positive in the first one.
     pub(crate) fn border(&self, columns: (f64, f64), rows: (f64, f64)) -> Line {
-        let (centre, _) = middle(columns, rows);
+        self.border_about(middle(columns, rows).0)
+    }
+
+    /// The same about a place.
+    pub(crate) fn border_about(&self, centre: (f64, f64)) -> Line {
         let view = self.view();
         let (x, y) = (view.x_at(centre.0), view.y_at(centre.1));
         let [right, down] = self.per_pixel;

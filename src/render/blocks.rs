@@ -33,18 +33,37 @@ pub(super) struct Cubic {
     pub(super) half_bend: f32,
 }
 
+/// Where a tile changes from one quarter turn to the other: positive in the first one, as a multiple of how far a pixel
+/// looks to either side.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Border {
+    pub(super) value: f32,
+    pub(super) per_column: f32,
+    pub(super) per_row: f32,
+}
+
+/// The edges of a tile in one quarter turn.
+#[derive(Debug)]
+pub(super) struct Side {
+    /// Each with whether it is another order's than the one before.
+    edges: [(bool, Cubic); MOST_EDGES],
+    count: usize,
+    last: usize,
+    /// Without edges: whether all of it is disk.
+    is_disk: bool,
+}
+
 /// A tile whose edges are cubics.
 #[derive(Debug)]
 pub(super) struct Drawing {
     /// Pixels from its centre to its sides.
-    half: [f32; 2],
+    pub(super) half: [f32; 2],
     /// For each pixel to the right and downwards.
-    across: [f32; 2],
-    along: [f32; 2],
-    /// Its edges, each with whether it is another order's than the one before.
-    edges: [(bool, Cubic); MOST_EDGES],
-    count: usize,
-    last: usize,
+    pub(super) across: [f32; 2],
+    pub(super) along: [f32; 2],
+    /// If it is in both quarter turns; in one of them it has but one side, the first.
+    pub(super) border: Option<Border>,
+    pub(super) sides: [Side; 2],
 }
 
 /// The pixels of a tile that are to be asked, each its column and its row in the tile.
@@ -80,6 +99,11 @@ impl Asked {
         }
     }
 
+    pub(super) fn push(&mut self, pixel: (u8, u8)) {
+        self.pixels[self.count] = pixel;
+        self.count += 1;
+    }
+
     pub(super) fn pixels(&self) -> &[(u8, u8)] {
         &self.pixels[..self.count]
     }
@@ -91,15 +115,13 @@ impl Canvas<'_> {
     }
 }
 
-impl Drawing {
-    pub(super) fn new(half: [f32; 2], across: [f32; 2], along: [f32; 2]) -> Self {
+impl Side {
+    pub(super) fn new(is_disk: bool) -> Self {
         Self {
-            half,
-            across,
-            along,
             edges: [(false, Cubic::default()); MOST_EDGES],
             count: 0,
             last: usize::MAX,
+            is_disk,
         }
     }
 
@@ -110,6 +132,31 @@ impl Drawing {
         self.count += 1;
     }
 
+    fn edges(&self) -> &[(bool, Cubic)] {
+        &self.edges[..self.count]
+    }
+
+    /// How far pixels of a row are within the disk: the most of the bands, each of which is the least of its edges.
+    #[inline(always)]
+    fn depth<S: Simd>(&self, simd: S, dx: f32x16<S>, dy: f32, bend: f32x16<S>) -> f32x16<S> {
+        let nothing = f32x16::splat(simd, f32::NEG_INFINITY);
+        let mut least = if self.is_disk { -nothing } else { nothing };
+        let mut most = nothing;
+        for (new, edge) in self.edges() {
+            let value = edge.value + dy * edge.per_row;
+            let g = dx * edge.per_column + value - bend * edge.half_bend;
+            if *new {
+                most = simd.max_f32x16(most, least);
+                least = g;
+            } else {
+                least = simd.min_f32x16(least, g);
+            }
+        }
+        simd.max_f32x16(most, least)
+    }
+}
+
+impl Drawing {
     /// Draws white pixels, all being black; those along the edges into `asked`.
     pub(super) fn draw(&self, level: Level, canvas: &mut Canvas<'_>, asked: &mut Asked) {
         dispatch!(level, |simd, _four| self.draw_in(simd, canvas, asked));
@@ -119,7 +166,12 @@ impl Drawing {
     fn draw_in<S: Simd>(&self, simd: S, canvas: &mut Canvas<'_>, asked: &mut Asked) {
         asked.count = 0;
         let (width, height) = canvas.size;
-        let blocks = if width.max(height) > BLOCK {
+        let blocks = if self.border.is_some() {
+            Blocks {
+                hit: 0,
+                mixed: 0xffff,
+            }
+        } else if width.max(height) > BLOCK {
             self.blocks(simd)
         } else {
             Blocks { hit: 0, mixed: 1 }
@@ -181,7 +233,7 @@ impl Drawing {
         // The least and the greatest of each band's edges, and the most of these.
         let (mut least, mut greatest) = (nothing, nothing);
         let (mut most_of_least, mut most) = (nothing, nothing);
-        for (new, edge) in &self.edges[..self.count] {
+        for (new, edge) in self.sides[0].edges() {
             let g = dx * edge.per_column + dy * edge.per_row + edge.value - bend * edge.half_bend;
             let (to_right, downwards) = (
                 -(bend_right * edge.half_bend) + edge.per_column,
@@ -221,7 +273,6 @@ impl Drawing {
     ) {
         let ([right, down], [farther_right, farther_down]) = (self.across, self.along);
         let (one, minus_one) = (f32x16::splat(simd, 1.0), f32x16::splat(simd, -1.0));
-        let nothing = f32x16::splat(simd, f32::NEG_INFINITY);
         let inside = (1_u32 << columns.len()) - 1;
         let dx = f32x16::from_slice(simd, &STEPS) + (columns.start as f32 + 0.5 - self.half[0]);
         let (across_row, along_row) = (dx * right, dx * farther_right);
@@ -232,19 +283,15 @@ impl Drawing {
                 let dy = j as f32 + 0.5 - self.half[1];
                 let across = across_row + dy * down;
                 let bend = across * across * (-along_row + (1.0 - dy * farther_down));
-                // The most of the bands, each of which is the least of its edges.
-                let (mut most, mut least) = (nothing, nothing);
-                for (new, edge) in &self.edges[..self.count] {
-                    let value = edge.value + dy * edge.per_row;
-                    let g = dx * edge.per_column + value - bend * edge.half_bend;
-                    if *new {
-                        most = simd.max_f32x16(most, least);
-                        least = g;
-                    } else {
-                        least = simd.min_f32x16(least, g);
-                    }
+                let mut most = self.sides[0].depth(simd, dx, dy, bend);
+                if let Some(border) = &self.border {
+                    // Surely of one quarter turn and what it is there, or what it is in both.
+                    let first = dx * border.per_column + (border.value + dy * border.per_row);
+                    let other = self.sides[1].depth(simd, dx, dy, bend);
+                    let either = simd
+                        .max_f32x16(simd.min_f32x16(first, most), simd.min_f32x16(-first, other));
+                    most = simd.max_f32x16(either, simd.min_f32x16(most, other));
                 }
-                most = simd.max_f32x16(most, least);
                 let white = simd.to_bitmask_mask32x16(simd.simd_ge_f32x16(most, one));
                 let black = simd.to_bitmask_mask32x16(simd.simd_lt_f32x16(most, minus_one));
                 let (white, some) = (white as u32 & inside, !black as u32 & inside);
@@ -264,8 +311,7 @@ impl Drawing {
                 let i = unsure.trailing_zeros() as usize;
                 unsure &= unsure - 1;
                 let (column, row) = (columns.start + i % BLOCK, top + i / BLOCK);
-                asked.pixels[asked.count] = (column as u8, row as u8);
-                asked.count += 1;
+                asked.push((column as u8, row as u8));
             }
         }
     }

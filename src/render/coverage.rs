@@ -104,20 +104,42 @@ impl Pixels for Shares<'_> {
         asked: &Asked,
         canvas: &mut Canvas<'_>,
     ) {
-        let mut edges = Edges::new(group.open(tile).quarter());
-        for of in group.edges(tile) {
-            edges.push(of);
-        }
-        let place = Place {
-            picture: &self.picture,
-            edges: &edges,
-            corner,
+        let draw = |quarter, asked: &[(u8, u8)], canvas: &mut Canvas<'_>| {
+            let mut edges = Edges::new(quarter);
+            for of in group.edges(tile, quarter) {
+                edges.push(of);
+            }
+            let place = Place {
+                picture: &self.picture,
+                edges: &edges,
+                corner,
+            };
+            dispatch!(level, |_simd, four| place.draw(four, asked, canvas));
         };
-        dispatch!(level, |_simd, four| place.draw(
-            four,
-            asked.pixels(),
-            canvas
-        ));
+        if !group.is_in_both(tile) {
+            draw(group.open(tile).quarter(), asked.pixels(), canvas);
+            return;
+        }
+        for quarter in [0, 1] {
+            let mut side = Asked::new();
+            for &(i, j) in asked.pixels() {
+                let (column, row) = (corner.0 + usize::from(i), corner.1 + usize::from(j));
+                let border = self
+                    .picture
+                    .border_about((column as f64 + 0.5, row as f64 + 0.5));
+                // A pixel's distance from where the quarter turns meet: its patch is in one of them from 0.95 on.
+                let gradient = libm::hypot(border.per_column, border.per_row);
+                if border.value.abs() < gradient {
+                    if quarter == 0 {
+                        canvas.pixels[usize::from(j) * canvas.stride + usize::from(i)] =
+                            self.value(column, row, None);
+                    }
+                } else if usize::from(border.value < 0.0) == quarter {
+                    side.push((i, j));
+                }
+            }
+            draw(quarter, side.pixels(), canvas);
+        }
     }
 }
 

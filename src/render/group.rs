@@ -1,9 +1,11 @@
 //! Four tiles of one size side by side: which of them are all disk or all sky, which edges are open over the others, and
 //! whether those are cubics there. Such a tile is [drawn](super::blocks).
 
-use super::blocks::{Cubic, Drawing};
+use super::blocks::{Border, Cubic, Drawing, Side};
 use super::tiles::Kind;
-use crate::isoradial::{Bent, Edge, EdgeOf, Listing, MOST_EDGES, Open, Patch, Picture, Sifted};
+use crate::isoradial::{
+    Bent, Edge, EdgeOf, Line, Listing, MOST_EDGES, Open, Patch, Picture, Sifted,
+};
 use crate::lanes::{Four, Level, dispatch};
 
 /// How many tiles stand side by side.
@@ -30,15 +32,18 @@ pub(super) struct Group {
     pub(super) hit: u32,
     /// None of them does.
     pub(super) miss: u32,
-    /// Nothing is known: they are in both quarter turns, or all about the hole's direction.
+    /// Nothing is known: they are all about the hole's direction, or in both quarter turns close to the disk's plane.
     pub(super) unknown: u32,
+    /// They are in both quarter turns.
+    pub(super) both: u32,
     /// All edges open over them are cubics, and straight over each pixel.
     pub(super) cubic: u32,
-    /// The edges that are open over any of them.
-    edges: [GroupEdge; 2 * MOST_EDGES + 1],
+    /// The edges that are open over any of them: of one and of both quarter turns.
+    edges: [GroupEdge; 4 * MOST_EDGES],
     count: usize,
-    /// In each quarter turn.
-    turns: [Turns; 2],
+    /// Of those in both quarter turns, in each.
+    halves: [Seen; 2],
+    turns: Turns,
     half: [f64; 2],
 }
 
@@ -59,7 +64,7 @@ struct Look {
     before: Open,
     /// A bit for each: whether it is asked about.
     active: u32,
-    /// Whether a tile may reach beyond the quarter turn's end. Its edges are not listed then.
+    /// Whether a tile may reach beyond the quarter turn's end.
     beyond: bool,
 }
 
@@ -96,10 +101,12 @@ impl Group {
             hit: 0,
             miss: 0,
             unknown: 0,
+            both: 0,
             cubic: 0,
-            edges: [edge; 2 * MOST_EDGES + 1],
+            edges: [edge; 4 * MOST_EDGES],
             count: 0,
-            turns: [Turns::default(); 2],
+            halves: [Seen::default(); 2],
+            turns: Turns::default(),
             half: [0.0; 2],
         }
     }
@@ -108,7 +115,7 @@ impl Group {
     pub(super) fn look(&mut self, level: Level, picture: &Picture<'_>, tiles: &Tiles, kind: Kind) {
         self.count = 0;
         self.half = tiles.half;
-        (self.hit, self.miss, self.cubic) = (0, 0, tiles.active);
+        (self.hit, self.miss, self.both, self.cubic) = (0, 0, 0, tiles.active);
         let before = |quarter| tiles.before.unwrap_or(Open::all(quarter));
         let mut left = tiles.active;
         for quarter in [0, 1] {
@@ -127,22 +134,24 @@ impl Group {
             }
         }
         if left != 0 && tiles.before.is_none() {
-            // They are in both quarter turns: which of them are all alike in both?
-            let (mut hit, mut miss) = (left, left);
+            let mut both = left;
             for quarter in [0, 1] {
                 let look = Look {
                     before: before(quarter),
-                    active: hit | miss,
+                    active: both,
                     beyond: true,
                 };
                 let seen = dispatch!(level, |_simd, four| self
                     .look_in(four, picture, tiles, look, kind));
-                hit &= seen.hit;
-                miss &= seen.miss;
+                both &= seen.sound;
+                self.halves[quarter] = seen;
             }
-            self.hit |= hit;
-            self.miss |= miss;
-            left &= !(hit | miss);
+            let [first, second] = self.halves;
+            let (hit, miss) = (first.hit & second.hit, first.miss & second.miss);
+            self.hit |= both & hit;
+            self.miss |= both & miss;
+            self.both = both & !hit & !miss;
+            left &= !both;
         }
         self.unknown = left;
     }
@@ -169,32 +178,38 @@ impl Group {
         if sound == 0 {
             return Seen::default();
         }
-        if !look.beyond {
-            self.turns[quarter] = Turns {
-                across: patch.across().map(Into::into),
-                along: patch.along().map(Into::into),
-            };
-        }
+        // The same in both quarter turns.
+        self.turns = Turns {
+            across: patch.across().map(Into::into),
+            along: patch.along().map(Into::into),
+        };
         let mut listed = Listed {
             group: self,
             patch: &patch,
             kind,
-            step: usize::from(!look.beyond),
         };
         let Sifted { hit, miss } = picture.sift(&patch, sound, look.before, &mut listed);
         Seen { sound, hit, miss }
     }
 
-    /// The edges that are open over a tile, which is neither hit nor missed nor unknown.
+    /// Whether a tile is in both quarter turns.
+    pub(super) fn is_in_both(&self, tile: usize) -> bool {
+        self.both & (1 << tile) != 0
+    }
+
+    /// The edges that are open over a tile, which is neither hit nor missed nor unknown, nor in both quarter turns.
     pub(super) fn open(&self, tile: usize) -> Open {
         let mut edges = self.edges_of(tile).peekable();
         let quarter = edges.peek().map_or(0, |edge| edge.quarter);
         edges.fold(Open::none(quarter), |open, edge| open.with(edge.of))
     }
 
-    /// The same, one by one.
-    pub(super) fn edges(&self, tile: usize) -> impl Iterator<Item = EdgeOf> {
-        self.edges_of(tile).map(|edge| edge.of)
+    /// The edges that are open over a tile in a quarter turn.
+    pub(super) fn edges(&self, tile: usize, quarter: usize) -> impl Iterator<Item = EdgeOf> {
+        let edges = self.edges_of(tile);
+        edges
+            .filter(move |edge| edge.quarter == quarter)
+            .map(|edge| edge.of)
     }
 
     fn edges_of(&self, tile: usize) -> impl Iterator<Item = &GroupEdge> {
@@ -203,15 +218,21 @@ impl Group {
             .filter(move |edge| edge.tiles & (1 << tile) != 0)
     }
 
-    /// What is drawn of a tile whose edges are cubics.
-    pub(super) fn drawing(&self, tile: usize) -> Drawing {
-        let quarter = self.edges_of(tile).next().map_or(0, |edge| edge.quarter);
-        let turns = &self.turns[quarter];
-        let mut drawing = Drawing::new(
-            self.half.map(|half| half as f32),
-            turns.across.map(|four| four[tile] as f32),
-            turns.along.map(|four| four[tile] as f32),
-        );
+    /// What is drawn of a tile whose edges are cubics: `border` is where it changes from one quarter turn to the other,
+    /// if it does.
+    pub(super) fn drawing(&self, tile: usize, border: Option<Border>) -> Drawing {
+        let mut drawing = Drawing {
+            half: self.half.map(|half| half as f32),
+            across: self.turns.across.map(|four| four[tile] as f32),
+            along: self.turns.along.map(|four| four[tile] as f32),
+            border,
+            sides: [Side::new(false), Side::new(false)],
+        };
+        if border.is_some() {
+            drawing.sides = self
+                .halves
+                .map(|half| Side::new(half.hit & (1 << tile) != 0));
+        }
         for edge in self.edges_of(tile) {
             let [value, per_column, per_row, half_bend] = edge.cubics.map(|four| four[tile] as f32);
             let cubic = Cubic {
@@ -220,7 +241,8 @@ impl Group {
                 per_row,
                 half_bend,
             };
-            drawing.push(edge.of.piece, cubic);
+            let side = if border.is_some() { edge.quarter } else { 0 };
+            drawing.sides[side].push(edge.of.piece, cubic);
         }
         drawing
     }
@@ -231,8 +253,6 @@ struct Listed<'a, T> {
     group: &'a mut Group,
     patch: &'a Patch<T>,
     kind: Kind,
-    /// 1, or 0 for edges that are of no interest: there is always room for one more.
-    step: usize,
 }
 
 impl<T: Four> Listing<T> for Listed<'_, T> {
@@ -246,7 +266,22 @@ impl<T: Four> Listing<T> for Listed<'_, T> {
             tiles,
             cubics,
         };
-        self.group.count += self.step;
+        self.group.count += 1;
+    }
+}
+
+/// The share of its terms by which a cubic is off in single precision: its dozen roundings, with room.
+const ROUNDING: f64 = 1.0 / 524_288.0;
+
+/// Where a tile so many pixels to either side changes from one quarter turn to the other.
+pub(super) fn border(line: &Line, half: [f64; 2], reach: f64) -> Border {
+    let (wide, high) = (line.per_column.abs(), line.per_row.abs());
+    let terms = line.value.abs() + wide * half[0] + high * half[1];
+    let unit = 1.0 / ((wide + high) * reach + terms * ROUNDING);
+    Border {
+        value: (unit * line.value) as f32,
+        per_column: (unit * line.per_column) as f32,
+        per_row: (unit * line.per_row) as f32,
     }
 }
 
@@ -258,8 +293,6 @@ fn cubics<T: Four>(
     edge: Edge,
     kind: Kind,
 ) -> ([[f64; TILES]; 4], u32) {
-    /// The share of its terms by which a cubic is off in single precision: its dozen roundings, with room.
-    const ROUNDING: f64 = 1.0 / 524_288.0;
     let [half_columns, half_rows] = patch.half();
     let line = &bent.line;
     let turning = patch.turning(bent);

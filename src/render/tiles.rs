@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::RenderError;
 use super::blocks::{Asked, Canvas};
 use super::coverage::Shares;
-use super::group::{Group, TILES, Tiles};
+use super::group::{Group, TILES, Tiles, border};
 use super::mask::{Hard, WHITE};
 use crate::isoradial::{Bundle, Isoradials, Open, Picture, Verdict};
 use crate::lanes::{Level, level};
@@ -172,7 +172,7 @@ impl<P: Pixels> Filler<'_, P> {
         band.group.look(self.level, &self.picture, &four, P::KIND);
         let group = &band.group;
         let (hit, miss, unknown) = (group.hit, group.miss, group.unknown);
-        let cubic = group.cubic;
+        let (both, cubic) = (group.both, group.cubic);
         let mut split = [None; TILES];
         for (i, tile) in tiles.into_iter().enumerate() {
             let is = |mask: u32| mask & (1 << i) != 0;
@@ -182,7 +182,9 @@ impl<P: Pixels> Filler<'_, P> {
             } else if is(unknown) {
                 split[i] = self.fill_bundle(band, tile).then_some(None);
             } else if is(cubic) {
-                self.draw(band, tile, i);
+                self.draw(band, tile, (four.columns[i], four.rows[i]), half, i);
+            } else if is(both) {
+                split[i] = Some(None);
             } else {
                 split[i] = Some(Some(band.group.open(i)));
             }
@@ -198,8 +200,7 @@ impl<P: Pixels> Filler<'_, P> {
         }
     }
 
-    /// Fills a tile whose rays are in both quarter turns, or all about the hole's direction, if it is all alike. Whether
-    /// it may not be.
+    /// Fills a tile of which nothing is known if it is all alike. Whether it may not be.
     fn fill_bundle(&self, band: &mut Band<'_>, tile: Tile) -> bool {
         // With half a pixel more on each side, where pixels look to either side of their centres: what is on one side
         // of an edge there is so too for lines that take the edge's place.
@@ -229,7 +230,7 @@ impl<P: Pixels> Filler<'_, P> {
     }
 
     /// Draws a tile whose edges are cubics, and asks the pixels along them.
-    fn draw(&self, band: &mut Band<'_>, tile: Tile, index: usize) {
+    fn draw(&self, band: &mut Band<'_>, tile: Tile, centre: (f64, f64), half: f64, index: usize) {
         let first = tile.top * band.stride + tile.left;
         let mut canvas = Canvas {
             pixels: &mut band.pixels[first..],
@@ -237,7 +238,11 @@ impl<P: Pixels> Filler<'_, P> {
             size: (tile.width, tile.height),
         };
         let (group, corner) = (&band.group, (tile.left, band.first + tile.top));
-        let drawing = group.drawing(index);
+        let line = group
+            .is_in_both(index)
+            .then(|| self.picture.border_about(centre));
+        let border = line.map(|line| border(&line, [half; 2], P::KIND.reach));
+        let drawing = group.drawing(index, border);
         drawing.draw(self.level, &mut canvas, &mut band.asked);
         self.pixels
             .draw_along(self.level, (group, index), corner, &band.asked, &mut canvas);
