@@ -4,11 +4,13 @@
 
 mod interleaved;
 
+use core::cell::RefCell;
+
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
 use darkness::render::{coverage, mask};
 use darkness::scene::{Scene, View, builtins};
-use darkness::table::{Spec, generate};
+use darkness::table::{Lookup, Spec, generate};
 use interleaved::{Contender, compare};
 
 fn main() {
@@ -21,54 +23,87 @@ fn main() {
     };
     one_thread.install(|| {
         for builtin in builtins() {
-            let Some(scene) = Scene::builtin(builtin.name()) else {
-                continue;
-            };
-            let view = View::new(&scene);
-            let sight = Sight::new(&scene, &view, scene.tolerance());
-            let curves = Isoradials::new(&sight, &lookup);
-            let pixels = view.width() as usize * view.height() as usize;
-            let mut bytes = vec![0_u8; pixels];
-            let mut frame = vec![0_u8; pixels];
-            let mut smooth = vec![0_u8; pixels];
-            compare(
-                &format!("{}, time per pixel", builtin.name()),
-                pixels,
-                51,
-                &mut [
-                    Contender {
-                        name: "filling the same bytes",
-                        run: Box::new(|| {
-                            std::hint::black_box(&mut bytes).fill(0);
-                            f64::from(bytes[0])
-                        }),
-                    },
-                    Contender {
-                        name: "hard edges",
-                        run: Box::new(|| {
-                            let width = view.width() as usize;
-                            let drawn = mask::render_into(&view, &curves, &mut frame, width);
-                            drawn.map_or(0.0, |()| f64::from(frame[pixels / 2]))
-                        }),
-                    },
-                    Contender {
-                        name: "smooth edges",
-                        run: Box::new(|| {
-                            let width = view.width() as usize;
-                            let drawn = coverage::render_into(&view, &curves, &mut smooth, width);
-                            drawn.map_or(0.0, |()| f64::from(smooth[pixels / 2]))
-                        }),
-                    },
-                    Contender {
-                        name: "the curves from exact",
-                        run: Box::new(|| Isoradials::new(&sight, &Exact).nodes() as f64),
-                    },
-                    Contender {
-                        name: "the curves",
-                        run: Box::new(|| Isoradials::new(&sight, &lookup).nodes() as f64),
-                    },
-                ],
-            );
+            if let Some(scene) = Scene::builtin(builtin.name()) {
+                frames_of(builtin.name(), &scene, &lookup, 51);
+            }
+        }
+        // Sixteen times the pixels, four times the edges.
+        let large = Scene::builtin("classic").and_then(|scene| scene.with_size(7680, 4320).ok());
+        if let Some(scene) = large {
+            frames_of("classic, 7680 × 4320", &scene, &lookup, 21);
         }
     });
+}
+
+fn frames_of(name: &str, scene: &Scene, lookup: &Lookup<'_>, rounds: usize) {
+    let view = View::new(scene);
+    let sight = Sight::new(scene, &view, scene.tolerance());
+    let curves = Isoradials::new(&sight, lookup);
+    let width = view.width() as usize;
+    let pixels = width * view.height() as usize;
+    // One buffer, which is as near in the caches for one contender as for another.
+    let buffer = RefCell::new(vec![0_u8; pixels]);
+    // And one for each: none is near when its turn comes.
+    let apart = [(); 3].map(|()| RefCell::new(vec![0_u8; pixels]));
+    let fill = |buffer: &RefCell<Vec<u8>>| {
+        let bytes = &mut *buffer.borrow_mut();
+        std::hint::black_box(&mut *bytes).fill(0);
+        f64::from(bytes[0])
+    };
+    let hard = |buffer: &RefCell<Vec<u8>>| {
+        let bytes = &mut *buffer.borrow_mut();
+        let drawn = mask::render_into(&view, &curves, bytes, width);
+        drawn.map_or(0.0, |()| f64::from(bytes[pixels / 2]))
+    };
+    let smooth = |buffer: &RefCell<Vec<u8>>| {
+        let bytes = &mut *buffer.borrow_mut();
+        let drawn = coverage::render_into(&view, &curves, bytes, width);
+        drawn.map_or(0.0, |()| f64::from(bytes[pixels / 2]))
+    };
+    compare(
+        &format!("{name}, time per pixel"),
+        pixels,
+        rounds,
+        &mut [
+            Contender {
+                name: "filling the same buffer",
+                run: Box::new(|| fill(&buffer)),
+            },
+            Contender {
+                name: "hard edges",
+                run: Box::new(|| hard(&buffer)),
+            },
+            Contender {
+                name: "smooth edges",
+                run: Box::new(|| smooth(&buffer)),
+            },
+            Contender {
+                name: "the curves from exact",
+                run: Box::new(|| Isoradials::new(&sight, &Exact).nodes() as f64),
+            },
+            Contender {
+                name: "the curves",
+                run: Box::new(|| Isoradials::new(&sight, lookup).nodes() as f64),
+            },
+        ],
+    );
+    compare(
+        "each into a buffer of its own",
+        pixels,
+        rounds,
+        &mut [
+            Contender {
+                name: "filling a buffer",
+                run: Box::new(|| fill(&apart[0])),
+            },
+            Contender {
+                name: "hard edges",
+                run: Box::new(|| hard(&apart[1])),
+            },
+            Contender {
+                name: "smooth edges",
+                run: Box::new(|| smooth(&apart[2])),
+            },
+        ],
+    );
 }
