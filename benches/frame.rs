@@ -20,7 +20,7 @@ fn drawn(frame: Result<Vec<u8>, RenderError>) -> Vec<u8> {
 }
 
 fn white(pixels: &[u8]) -> f64 {
-    pixels.iter().map(|&pixel| f64::from(pixel)).sum()
+    pixels.iter().map(|&pixel| u64::from(pixel)).sum::<u64>() as f64
 }
 
 /// The baseline's frame.
