@@ -1,5 +1,24 @@
 //! Frames: what a pixel's centre sees, white where that is the disk at any order ([`mask`], [`pixelwise`]), or the share
-//! of its square that the disk covers ([`coverage`]).
+//! of its square that the disk covers ([`coverage`]); of many views [side by side](batch).
+//!
+//! A viewer or an encoder has frames drawn into memory of its own:
+//!
+//! ```
+//! use darkness::isoradial::{Isoradials, Sight};
+//! use darkness::orbit::exact::Exact;
+//! use darkness::render::coverage;
+//! use darkness::scene::{Scene, View};
+//!
+//! let scene = Scene::builtin("classic").unwrap().with_size(320, 180)?;
+//! let view = View::new(&scene);
+//! // From a table's lookup in place of Exact in half the time.
+//! let curves = Isoradials::new(&Sight::new(&scene, &view, scene.tolerance()), &Exact);
+//! // Rows of 320 bytes, 512 apart.
+//! let mut memory = vec![0; 512 * 180];
+//! coverage::render_into(&view, &curves, &mut memory, 512)?;
+//! assert!(memory.contains(&255));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod area;
 pub mod batch;
