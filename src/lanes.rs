@@ -341,7 +341,9 @@ pub(crate) fn rounded(number: f64, last: i32) -> u32 {
     ((number + ROUNDER).to_bits() as i32).max(0).min(last) as u32
 }
 
+/// Numbers side by side with others that mean nothing may have the two the other way round: any answer is right then.
 fn range_of(list: &[f64], first: usize, last: usize) -> [f64; 2] {
+    let last = last.max(first);
     let (mut least, mut greatest) = (list[first], list[first]);
     for &number in &list[first..=last] {
         if number < least {

@@ -24,6 +24,11 @@ use crate::scene::View;
 /// What is not linear of an edge over a pixel, in pixels, beyond which the pixel is cut up.
 const STRAIGHT: f64 = 1.0 / 32.0;
 
+/// How far about a pixel, or a part of one, its edges are looked for, as a share of its sides: farther than the tangent of
+/// a straight one is off. So it makes no difference which edges beyond that are looked at too: their tangents do not
+/// reach the pixel.
+const MARGIN: f64 = 1.0 / 16.0;
+
 /// The smallest parts that a pixel is cut into where an edge bends, as shares of it.
 const SMALLEST: f64 = 1.0 / 256.0;
 
@@ -86,8 +91,10 @@ impl Pixels for Shares<'_> {
         reach: 0.5,
         // Measured as the cheapest.
         doubt: 0.2,
-        // A tile's bound is wider than the pixel's own.
-        bend: 0.9 * STRAIGHT,
+        // A tile's bound may be less than a pixel's own, which begins from another centre and is that of the pixel and its
+        // margin: in a tile of two by two pixels, four from the hole's direction, by a factor of 2.2.
+        bend: 0.4 * STRAIGHT,
+        margin: MARGIN,
         smallest: 1,
     };
 
@@ -127,9 +134,9 @@ impl Pixels for Shares<'_> {
                 let border = self
                     .picture
                     .border_about((column as f64 + 0.5, row as f64 + 0.5));
-                // A pixel's distance from where the quarter turns meet: its patch is in one of them from 0.95 on.
+                // A pixel's distance from where the quarter turns meet: its patch is in one of them from 1.07 on.
                 let gradient = libm::hypot(border.per_column, border.per_row);
-                if border.value.abs() < gradient {
+                if border.value.abs() < 1.25 * gradient {
                     if quarter == 0 {
                         canvas.pixels[usize::from(j) * canvas.stride + usize::from(i)] =
                             self.value(column, row, None);
@@ -141,6 +148,12 @@ impl Pixels for Shares<'_> {
             draw(quarter, side.pixels(), canvas);
         }
     }
+}
+
+/// With the margin to either side.
+fn about((from, to): (f64, f64)) -> (f64, f64) {
+    let margin = MARGIN * (to - from);
+    (from - margin, to + margin)
 }
 
 fn byte(share: f64) -> u8 {
@@ -376,7 +389,7 @@ impl<'a> Shares<'a> {
     fn share(&self, columns: (f64, f64), rows: (f64, f64), open: Option<Open>) -> f64 {
         let sides = [columns.1 - columns.0, rows.1 - rows.0];
         let area = sides[0] * sides[1];
-        let Some(patch) = self.picture.patch(columns, rows) else {
+        let Some(patch) = self.picture.patch(about(columns), about(rows)) else {
             return if let Some(share) = self.share_of_both(columns, rows) {
                 share
             } else if area <= SMALLEST_OF_ALL {
@@ -415,7 +428,9 @@ impl<'a> Shares<'a> {
         let border = self.picture.border(columns, rows);
         let mut share = 0.0;
         for (quarter, border) in [border, border.opposite()].into_iter().enumerate() {
-            let patch = self.picture.patch_in_quarter(columns, rows, quarter)?;
+            let patch = self
+                .picture
+                .patch_in_quarter(about(columns), about(rows), quarter)?;
             share += match self.sift(&patch, None) {
                 Seen::All => share_beside(&border, &[], sides),
                 Seen::Nothing => 0.0,

@@ -17,7 +17,7 @@ pub(super) struct Tiles {
     /// Their centres.
     pub(super) columns: [f64; TILES],
     pub(super) rows: [f64; TILES],
-    /// Pixels from there to their sides.
+    /// Pixels from there to their sides, with the margin in which edges are looked for too.
     pub(super) half: [f64; 2],
     /// A bit for each: whether it is asked about.
     pub(super) active: u32,
@@ -44,7 +44,6 @@ pub(super) struct Group {
     /// Of those in both quarter turns, in each.
     halves: [Seen; 2],
     turns: Turns,
-    half: [f64; 2],
 }
 
 /// An edge that is open over some of the tiles.
@@ -107,14 +106,12 @@ impl Group {
             count: 0,
             halves: [Seen::default(); 2],
             turns: Turns::default(),
-            half: [0.0; 2],
         }
     }
 
     /// Looks at tiles.
     pub(super) fn look(&mut self, level: Level, picture: &Picture<'_>, tiles: &Tiles, kind: Kind) {
         self.count = 0;
-        self.half = tiles.half;
         (self.hit, self.miss, self.both, self.cubic) = (0, 0, 0, tiles.active);
         let before = |quarter| tiles.before.unwrap_or(Open::all(quarter));
         let mut left = tiles.active;
@@ -218,11 +215,11 @@ impl Group {
             .filter(move |edge| edge.tiles & (1 << tile) != 0)
     }
 
-    /// What is drawn of a tile whose edges are cubics: `border` is where it changes from one quarter turn to the other,
+    /// What is drawn of a tile whose edges are cubics, `half` pixels from its centre to its sides: `border` is where it changes from one quarter turn to the other,
     /// if it does.
-    pub(super) fn drawing(&self, tile: usize, border: Option<Border>) -> Drawing {
+    pub(super) fn drawing(&self, tile: usize, half: f64, border: Option<Border>) -> Drawing {
         let mut drawing = Drawing {
-            half: self.half.map(|half| half as f32),
+            half: [half as f32; 2],
             across: self.turns.across.map(|four| four[tile] as f32),
             along: self.turns.along.map(|four| four[tile] as f32),
             border,

@@ -69,6 +69,7 @@ impl Pixels for Hard<'_> {
         // Measured as the cheapest.
         doubt: 0.1,
         bend: f64::INFINITY,
+        margin: 0.0,
         smallest: 4,
     };
 

@@ -28,6 +28,8 @@ pub(super) struct Kind {
     pub(super) doubt: f64,
     /// How far an edge may be off its tangent over a pixel of such a tile, in pixels.
     pub(super) bend: f64,
+    /// How far about a tile its edges are looked for, in pixels.
+    pub(super) margin: f64,
     /// The side of the smallest tiles, in pixels.
     pub(super) smallest: usize,
 }
@@ -165,7 +167,7 @@ impl<P: Pixels> Filler<'_, P> {
         let four = Tiles {
             columns: corners.map(|(left, _)| left as f64 + half),
             rows: corners.map(|(_, top)| (band.first + top) as f64 + half),
-            half: [half; 2],
+            half: [half + P::KIND.margin; 2],
             active,
             before,
         };
@@ -242,7 +244,7 @@ impl<P: Pixels> Filler<'_, P> {
             .is_in_both(index)
             .then(|| self.picture.border_about(centre));
         let border = line.map(|line| border(&line, [half; 2], P::KIND.reach));
-        let drawing = group.drawing(index, border);
+        let drawing = group.drawing(index, half, border);
         drawing.draw(self.level, &mut canvas, &mut band.asked);
         self.pixels
             .draw_along(self.level, (group, index), corner, &band.asked, &mut canvas);
