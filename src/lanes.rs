@@ -467,3 +467,62 @@ pub(crate) fn check_environment() -> Result<(), String> {
         _ => Ok(()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a lane means nothing of may ask for anything, and ends no other's.
+    #[test]
+    fn ranges_the_wrong_way_round_are_no_panic() {
+        let list = [3.0, 1.0, 2.0, 5.0];
+        let four = OneByOne([0.0; 4]);
+        let [least, greatest] = four.range_of(&list, [0, 1, 3, 2], [3, 2, 0, 2]);
+        assert_eq!(least.0[..2], [1.0, 1.0]);
+        assert_eq!(greatest.0[..2], [5.0, 2.0]);
+        assert_eq!((least.0[3], greatest.0[3]), (2.0, 2.0));
+    }
+
+    fn operations<T: Real>(x: T, y: T, list: &[f64]) -> [T; 9] {
+        let (index, rounded) = x.rounded(8);
+        let [first, second, third, fourth] = x.neighbours(list, index);
+        [
+            x + y,
+            x * y - 1.5,
+            x / y,
+            -x.abs() + y.abs().sqrt(),
+            x.if_less(y, x, y),
+            x.larger(y) - x.smaller(y),
+            rounded,
+            first + second,
+            third * 2.0 + fourth,
+        ]
+    }
+
+    fn each_is_its_own<T: Four>(four: T) {
+        let list: Vec<f64> = (0..12).map(|i| f64::from(i * i)).collect();
+        let (a, b) = ([0.5, -3.0, 7.25, f64::NAN], [2.0, -3.0, -0.125, 1.0]);
+        let (x, y) = (four.of(a), four.of(b));
+        let all = operations(x, y, &list).map(Into::into);
+        for i in 0..4 {
+            let each = operations(a[i], b[i], &list);
+            for (all, each) in all.iter().zip(each) {
+                assert!(
+                    all[i] == each || all[i].is_nan() && each.is_nan(),
+                    "{} and {each} from {} and {}",
+                    all[i],
+                    a[i],
+                    b[i]
+                );
+            }
+            assert_eq!((x.less(y) >> i) & 1, a[i].less(b[i]));
+        }
+    }
+
+    /// Each operation on four numbers is that on each of them, whatever the instructions.
+    #[test]
+    fn four_numbers_are_each_of_them() {
+        dispatch!(Level::Scalar, |_simd, four| each_is_its_own(four));
+        dispatch!(level(), |_simd, four| each_is_its_own(four));
+    }
+}

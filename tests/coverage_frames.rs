@@ -65,6 +65,40 @@ fn tangents_show_nothing_where_a_tile_does_not() {
     assert!(smooth(&picture) == single);
 }
 
+/// Guards against an edge that counts in a pixel from its tile and not from the pixel alone: proved off it while its
+/// tangent clips a corner, or bent too much by the one bound and not by the other.
+#[test]
+fn an_edge_beside_a_pixel_counts_from_a_tile_as_from_the_pixel() {
+    let seen = |position: &str, focus: &str, up: &str, fov: &str, outer: &str, size: &str| {
+        format!(
+            "[camera]\nposition = [{position}]\nfocus = [{focus}]\nup = [{up}, 0.2, 1.0]\nfov = {fov}\n\
+             [disk]\ninner = 3.0\nouter = {outer}\n[image]\n{size}\n"
+        )
+    };
+    for text in [
+        seen(
+            "0.0, 0.0, -387.6866343605761",
+            "-0.4811046642851364, 0.6301449297092975, -0.0008106353583912096",
+            "0.13723493364854428",
+            "1.204742963716989",
+            "18.89376692201001",
+            "width = 41\nheight = 38",
+        ),
+        seen(
+            "-1.9883185377756443, -16.6826129627786, 0.0",
+            "0.21025151707377865, -0.026451688435980003, -0.039587757444630584",
+            "0.4625483908688213",
+            "52.213853224639045",
+            "8.179440027755556",
+            "width = 108\nheight = 75",
+        ),
+    ] {
+        let picture = picture(&Scene::from_toml(&text).unwrap());
+        let single = coverage::render_every_pixel(&picture.view, &picture.curves).unwrap();
+        assert!(smooth(&picture) == single, "{text}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, ..ProptestConfig::default() })]
 

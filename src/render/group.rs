@@ -215,8 +215,8 @@ impl Group {
             .filter(move |edge| edge.tiles & (1 << tile) != 0)
     }
 
-    /// What is drawn of a tile whose edges are cubics, `half` pixels from its centre to its sides: `border` is where it changes from one quarter turn to the other,
-    /// if it does.
+    /// What is drawn of a tile whose edges are cubics, `half` pixels from its centre to its sides: `border` is where it
+    /// changes from one quarter turn to the other, if it does.
     pub(super) fn drawing(&self, tile: usize, half: f64, border: Option<Border>) -> Drawing {
         let mut drawing = Drawing {
             half: [half as f32; 2],
