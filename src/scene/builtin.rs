@@ -34,7 +34,7 @@ pub fn builtins() -> &'static [Builtin] {
     &BUILTINS
 }
 
-static BUILTINS: [Builtin; 6] = [
+static BUILTINS: [Builtin; 9] = [
     Builtin {
         name: "classic",
         toml: include_str!("builtin/classic.toml"),
@@ -59,11 +59,23 @@ static BUILTINS: [Builtin; 6] = [
         name: "photon-ring",
         toml: include_str!("builtin/photon-ring.toml"),
     },
+    Builtin {
+        name: "orbit",
+        toml: include_str!("builtin/orbit.toml"),
+    },
+    Builtin {
+        name: "approach",
+        toml: include_str!("builtin/approach.toml"),
+    },
+    Builtin {
+        name: "tilt",
+        toml: include_str!("builtin/tilt.toml"),
+    },
 ];
 
 #[cfg(test)]
 mod tests {
-    use super::super::{DEFAULT_SCENE, Scene, View};
+    use super::super::{Animation, DEFAULT_SCENE, Scene, View};
     use super::*;
 
     #[test]
@@ -71,7 +83,14 @@ mod tests {
         for builtin in builtins() {
             let scene = Scene::from_toml(builtin.toml()).unwrap();
             assert_eq!(Scene::builtin(builtin.name()), Some(scene));
-            assert_eq!(Scene::from_toml(&scene.to_toml()).unwrap(), scene);
+            let again = Scene::from_toml(&scene.to_toml()).unwrap();
+            assert_eq!(again.camera(), scene.camera());
+            assert_eq!(again.disk(), scene.disk());
+            let animation = Animation::from_toml(builtin.toml()).unwrap();
+            assert_eq!(Animation::from_toml(&animation.to_toml()).unwrap(), animation);
+            for number in 1..=animation.frames() {
+                animation.check(number).unwrap();
+            }
             assert!(builtin.toml().starts_with("# "), "{}", builtin.name());
             assert!(
                 (20..100).contains(&builtin.description().chars().count()),

@@ -87,7 +87,7 @@ impl View {
     /// The view of a scene.
     pub fn new(scene: &Scene) -> Self {
         let (camera, disk, image) = (scene.camera(), scene.disk(), scene.image());
-        let radius = norm(camera.position);
+        let radius = scene.radius();
         let p = direction(camera.position);
 
         // One power of two for V and F, so that neither squares out of range. A scene's V is not much shorter than F.

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::animation::MAX_FRAMES;
 use super::builtin::builtins;
 use super::validate::{
     FARTHEST_CAMERA, ISCO_RADIUS, MAX_IMAGE_SIDE, MAX_PIXELS, MAX_TOLERANCE, WIDEST_DISK,
@@ -23,6 +24,100 @@ pub enum SceneError {
         key: &'static str,
         /// The number.
         value: f64,
+    },
+    /// Nothing says where the camera is.
+    #[error(
+        "camera.position is missing: it says where the camera is, unless [animation] has an orbit or keyframes with a position"
+    )]
+    NoPosition,
+    /// An orbit and keyframes both say where the camera is.
+    #[error(
+        "animation.orbit says where the camera is, and keyframes with a position say it again: leave out one of them"
+    )]
+    OrbitAndPosition,
+    /// The number of frames is not allowed.
+    #[error("animation.frames = {frames} is not allowed: an animation has 1 to {MAX_FRAMES} frames")]
+    Frames {
+        /// What was asked for.
+        frames: i64,
+    },
+    /// The frames' rate is not allowed.
+    #[error("animation.fps = {fps:?} is not allowed: it is from 0.001 to 1000 frames a second; 24 is the default")]
+    Fps {
+        /// What was asked for.
+        fps: f64,
+    },
+    /// A keyframe is none of the animation's frames.
+    #[error("a keyframe has frame = {number}: the animation has frames 1 to {frames}")]
+    KeyframeOutside {
+        /// The keyframe's number.
+        number: i64,
+        /// How many frames there are.
+        frames: u32,
+    },
+    /// Keyframes do not follow one another.
+    #[error("the keyframe at frame {number} comes after the one at frame {before}: each keyframe's frame must be above the one before")]
+    KeyframeOrder {
+        /// The keyframe's number.
+        number: i64,
+        /// That of the keyframe before it in the file.
+        before: i64,
+    },
+    /// A keyframe names nothing.
+    #[error("the keyframe at frame {number} says nothing: give it a position, focus, up, fov or normal")]
+    KeyframeEmpty {
+        /// The keyframe's number.
+        number: i64,
+    },
+    /// Something is wrong in a keyframe.
+    #[error("the keyframe at frame {number}: {error}")]
+    InKeyframe {
+        /// The keyframe's number.
+        number: i64,
+        /// What is wrong.
+        error: Box<SceneError>,
+    },
+    /// Between two directions there is no shortest way.
+    #[error(
+        "the keyframes at frames {first} and {second} have {key} in opposite directions, so that no way between them is the shortest: add a keyframe that says which way"
+    )]
+    Opposite {
+        /// The key.
+        key: &'static str,
+        /// The earlier keyframe's number.
+        first: u32,
+        /// The later keyframe's number.
+        second: u32,
+    },
+    /// Something is wrong at one frame.
+    #[error("frame {number}: {error}")]
+    InFrame {
+        /// The frame's number.
+        number: u32,
+        /// What is wrong.
+        error: Box<SceneError>,
+    },
+    /// The camera goes through the disk.
+    #[error(
+        "frame {number}: on the way to the next frame the camera goes through the disk's matter, at radius {radius:.6} (disk.inner = {inner:?}, disk.outer = {outer:?}): lead it past the disk"
+    )]
+    ThroughMatter {
+        /// The last frame before.
+        number: u32,
+        /// The radius at which it does.
+        radius: f64,
+        /// The disk's inner edge.
+        inner: f64,
+        /// The disk's outer edge.
+        outer: f64,
+    },
+    /// The animation has no such frame.
+    #[error("there is no frame {number}: the frames are 1 to {frames}")]
+    NoFrame {
+        /// What was asked for.
+        number: u32,
+        /// How many frames there are.
+        frames: u32,
     },
     /// A direction is the zero vector.
     #[error(

@@ -2,9 +2,10 @@
 
 use std::fmt;
 
-use serde::de::Error as _;
+use serde::de::{Error as _, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
+use super::animation::Interpolation;
 use super::{DEFAULT_TOLERANCE, Scene, SceneError};
 
 /// The whole file.
@@ -14,18 +15,21 @@ pub(super) struct SceneFile {
     pub(super) camera: CameraTable,
     pub(super) disk: DiskTable,
     pub(super) image: ImageTable,
+    pub(super) animation: Option<AnimationTable>,
 }
 
 /// `[camera]`.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CameraTable {
-    #[serde(deserialize_with = "three_numbers")]
-    pub(super) position: [f64; 3],
+    /// Left out where the animation says where the camera is.
+    #[serde(default, deserialize_with = "maybe_three_numbers")]
+    pub(super) position: Option<[f64; 3]>,
     #[serde(default = "hole", deserialize_with = "three_numbers")]
     pub(super) focus: [f64; 3],
-    #[serde(default = "plus_z", deserialize_with = "three_numbers")]
-    pub(super) up: [f64; 3],
+    /// Its default depends on the animation.
+    #[serde(default, deserialize_with = "maybe_three_numbers")]
+    pub(super) up: Option<[f64; 3]>,
     pub(super) fov: f64,
 }
 
@@ -49,6 +53,128 @@ pub(super) struct ImageTable {
     pub(super) antialias: bool,
     #[serde(default = "default_tolerance")]
     pub(super) tolerance: f64,
+}
+
+/// `[animation]`. Frame numbers are signed as sizes are.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AnimationTable {
+    pub(super) frames: i64,
+    #[serde(default = "of_film")]
+    pub(super) fps: f64,
+    #[serde(default = "smooth", deserialize_with = "smooth_or_linear")]
+    pub(super) interpolation: Interpolation,
+    pub(super) orbit: Option<OrbitTable>,
+    #[serde(default)]
+    pub(super) keyframe: Vec<KeyframeTable>,
+}
+
+/// `animation.orbit`: radius, and angles in degrees.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct OrbitTable {
+    pub(super) radius: Span,
+    pub(super) inclination: Span,
+    pub(super) azimuth: Span,
+}
+
+/// What stays at a number, or changes from one to another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Span {
+    pub(super) from: f64,
+    pub(super) to: f64,
+}
+
+/// `[[animation.keyframe]]`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct KeyframeTable {
+    pub(super) frame: i64,
+    #[serde(default, deserialize_with = "maybe_three_numbers")]
+    pub(super) position: Option<[f64; 3]>,
+    #[serde(default, deserialize_with = "maybe_three_numbers")]
+    pub(super) focus: Option<[f64; 3]>,
+    #[serde(default, deserialize_with = "maybe_three_numbers")]
+    pub(super) up: Option<[f64; 3]>,
+    pub(super) fov: Option<f64>,
+    #[serde(default, deserialize_with = "maybe_three_numbers")]
+    pub(super) normal: Option<[f64; 3]>,
+}
+
+impl KeyframeTable {
+    /// Whether it names nothing but its frame.
+    pub(super) fn is_empty(&self) -> bool {
+        let vectors = [self.position, self.focus, self.up, self.normal];
+        vectors.iter().all(Option::is_none) && self.fov.is_none()
+    }
+}
+
+impl<'de> Deserialize<'de> for Span {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        struct Numbers;
+
+        impl<'de> Visitor<'de> for Numbers {
+            type Value = Span;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "a number, or two as [from, to]")
+            }
+
+            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Span, E> {
+                Ok(Span {
+                    from: value,
+                    to: value,
+                })
+            }
+
+            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Span, E> {
+                self.visit_f64(value as f64)
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut numbers: A) -> Result<Span, A::Error> {
+                let mut pair = [0.0; 2];
+                for (count, number) in pair.iter_mut().enumerate() {
+                    let next = numbers.next_element()?;
+                    *number = next.ok_or_else(|| A::Error::invalid_length(count, &Self))?;
+                }
+                if numbers.next_element::<f64>()?.is_some() {
+                    return Err(A::Error::invalid_length(3, &Self));
+                }
+                let [from, to] = pair;
+                Ok(Span { from, to })
+            }
+        }
+
+        source.deserialize_any(Numbers)
+    }
+}
+
+impl fmt::Display for Span {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.from == self.to {
+            write!(f, "{:?}", self.from)
+        } else {
+            write!(f, "[{:?}, {:?}]", self.from, self.to)
+        }
+    }
+}
+
+fn of_film() -> f64 {
+    24.0
+}
+
+fn smooth() -> Interpolation {
+    Interpolation::Smooth
+}
+
+fn smooth_or_linear<'de, D: Deserializer<'de>>(source: D) -> Result<Interpolation, D::Error> {
+    match String::deserialize(source)?.as_str() {
+        "smooth" => Ok(Interpolation::Smooth),
+        "linear" => Ok(Interpolation::Linear),
+        other => Err(D::Error::custom(format_args!(
+            "the interpolation is \"smooth\" or \"linear\", not \"{other}\""
+        ))),
+    }
 }
 
 fn hole() -> [f64; 3] {
@@ -78,6 +204,10 @@ fn three_numbers<'de, D: Deserializer<'de>>(source: D) -> Result<[f64; 3], D::Er
     })
 }
 
+fn maybe_three_numbers<'de, D: Deserializer<'de>>(source: D) -> Result<Option<[f64; 3]>, D::Error> {
+    three_numbers(source).map(Some)
+}
+
 impl SceneFile {
     /// Reads the TOML text.
     ///
@@ -94,9 +224,9 @@ impl From<&Scene> for SceneFile {
     fn from(scene: &Scene) -> Self {
         Self {
             camera: CameraTable {
-                position: scene.camera.position.to_array(),
+                position: Some(scene.camera.position.to_array()),
                 focus: scene.camera.focus.to_array(),
-                up: scene.camera.up.to_array(),
+                up: Some(scene.camera.up.to_array()),
                 fov: scene.camera.fov_degrees,
             },
             disk: DiskTable {
@@ -110,6 +240,7 @@ impl From<&Scene> for SceneFile {
                 antialias: scene.antialias,
                 tolerance: scene.tolerance,
             },
+            animation: None,
         }
     }
 }
@@ -122,11 +253,12 @@ impl fmt::Display for SceneFile {
             camera,
             disk,
             image,
+            animation,
         } = self;
         writeln!(f, "[camera]")?;
-        writeln!(f, "position = {:?}", camera.position)?;
+        line(f, "position", camera.position)?;
         writeln!(f, "focus = {:?}", camera.focus)?;
-        writeln!(f, "up = {:?}", camera.up)?;
+        line(f, "up", camera.up)?;
         writeln!(f, "fov = {:?}", camera.fov)?;
         writeln!(f, "\n[disk]")?;
         writeln!(f, "inner = {:?}", disk.inner)?;
@@ -136,8 +268,50 @@ impl fmt::Display for SceneFile {
         writeln!(f, "width = {}", image.width)?;
         writeln!(f, "height = {}", image.height)?;
         writeln!(f, "antialias = {}", image.antialias)?;
-        writeln!(f, "tolerance = {:?}", image.tolerance)
+        writeln!(f, "tolerance = {:?}", image.tolerance)?;
+        animation
+            .as_ref()
+            .map_or(Ok(()), |animation| write!(f, "\n{animation}"))
     }
+}
+
+impl fmt::Display for AnimationTable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "[animation]")?;
+        writeln!(f, "frames = {}", self.frames)?;
+        writeln!(f, "fps = {:?}", self.fps)?;
+        let interpolation = match self.interpolation {
+            Interpolation::Smooth => "smooth",
+            Interpolation::Linear => "linear",
+        };
+        writeln!(f, "interpolation = \"{interpolation}\"")?;
+        if let Some(orbit) = &self.orbit {
+            let OrbitTable {
+                radius,
+                inclination,
+                azimuth,
+            } = orbit;
+            writeln!(
+                f,
+                "orbit = {{ radius = {radius}, inclination = {inclination}, azimuth = {azimuth} }}"
+            )?;
+        }
+        for keyframe in &self.keyframe {
+            writeln!(f, "\n[[animation.keyframe]]")?;
+            writeln!(f, "frame = {}", keyframe.frame)?;
+            line(f, "position", keyframe.position)?;
+            line(f, "focus", keyframe.focus)?;
+            line(f, "up", keyframe.up)?;
+            line(f, "fov", keyframe.fov)?;
+            line(f, "normal", keyframe.normal)?;
+        }
+        Ok(())
+    }
+}
+
+/// The line of a key that has a value.
+fn line(f: &mut fmt::Formatter<'_>, key: &str, value: Option<impl fmt::Debug>) -> fmt::Result {
+    value.map_or(Ok(()), |value| writeln!(f, "{key} = {value:?}"))
 }
 
 #[cfg(test)]
@@ -153,9 +327,9 @@ mod tests {
     #[test]
     fn what_has_a_default_may_be_left_out() {
         let file = SceneFile::parse(SHORTEST).unwrap();
-        assert_eq!(file.camera.position, [20.0, 0.0, 5.0]);
+        assert_eq!(file.camera.position, Some([20.0, 0.0, 5.0]));
         assert_eq!(file.camera.focus, [0.0; 3]);
-        assert_eq!(file.camera.up, [0.0, 0.0, 1.0]);
+        assert_eq!((file.camera.up, file.animation), (None, None));
         assert_eq!(file.disk.normal, [0.0, 0.0, 1.0]);
         assert!(file.image.antialias);
         assert_eq!(file.image.tolerance, 0.001);
@@ -164,7 +338,6 @@ mod tests {
     #[test]
     fn what_has_none_may_not_and_the_message_names_it() {
         for line in [
-            "position = [20, 0, 5]",
             "fov = 40",
             "inner = 3",
             "outer = 12",
@@ -198,11 +371,11 @@ mod tests {
     #[test]
     fn written_toml_reads_back_to_the_same_bits() {
         let mut file = SceneFile::parse(SHORTEST).unwrap();
-        file.camera.position = [0.1 + 0.2, -1e-300, 123_456_789_012_345.0];
-        file.camera.up = [5e-324, f64::MAX, -0.0];
+        file.camera.position = Some([0.1 + 0.2, -1e-300, 123_456_789_012_345.0]);
+        file.camera.up = Some([5e-324, f64::MAX, -0.0]);
         file.camera.fov = 1e-9;
         let back = SceneFile::parse(&file.to_string()).unwrap();
         assert_eq!(back, file);
-        assert!(back.camera.up[2].is_sign_negative());
+        assert!(back.camera.up.is_some_and(|up| up[2].is_sign_negative()));
     }
 }

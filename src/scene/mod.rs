@@ -23,8 +23,10 @@
 //! tolerance = 0.001                  # default; what an edge may be off by, in pixels; 0 < tolerance ≤ 1
 //! ```
 //!
-//! Lengths are in Schwarzschild radii, directions have any length but zero.
+//! Lengths are in Schwarzschild radii, directions have any length but zero. A scene that moves has a part more, which
+//! [`animation`] shows; where one picture is asked for, it is the first frame.
 
+pub mod animation;
 mod builtin;
 mod camera;
 mod error;
@@ -38,6 +40,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
+pub use animation::Animation;
 pub use builtin::{Builtin, builtins};
 pub use camera::{Affine, PixelRay, View};
 pub use error::SceneError;
@@ -101,6 +104,7 @@ pub struct ImageSize {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scene {
     camera: Camera,
+    radius: f64,
     disk: Disk,
     image: ImageSize,
     antialias: bool,
@@ -114,7 +118,7 @@ impl Scene {
     /// [`SceneError::Toml`] with line and column where the text is no TOML, a key is missing, unknown or of the wrong
     /// type; else the variant that names the value and what is allowed.
     pub fn from_toml(text: &str) -> Result<Self, SceneError> {
-        validate::scene(file::SceneFile::parse(text)?)
+        Animation::from_toml(text)?.frame(1)
     }
 
     /// The built-in scene of that name, if there is one; [`builtins`] lists them.
@@ -131,22 +135,7 @@ impl Scene {
     /// [`SceneError::Unknown`] where there is neither, [`SceneError::Read`] for a file that cannot be read,
     /// [`SceneError::InFile`] for one that holds no valid scene.
     pub fn load(path_or_name: impl AsRef<Path>) -> Result<Self, SceneError> {
-        let path = path_or_name.as_ref();
-        if let Some(scene) = path.to_str().and_then(Self::builtin) {
-            return Ok(scene);
-        }
-        let text = read(path).map_err(|error| {
-            let path = path.to_owned();
-            if error.kind() == io::ErrorKind::NotFound {
-                SceneError::Unknown { path }
-            } else {
-                SceneError::Read { path, error }
-            }
-        })?;
-        Self::from_toml(&text).map_err(|error| SceneError::InFile {
-            path: path.to_owned(),
-            error: Box::new(error),
-        })
+        load_text(path_or_name.as_ref(), Self::from_toml)
     }
 
     /// The same scene as a picture of another size; the vertical field of view stays.
@@ -183,6 +172,12 @@ impl Scene {
         &self.camera
     }
 
+    /// The camera's radius, `|position|`, in Schwarzschild radii. Along an animation at one radius it is the same to the last
+    /// bit, where the position's components are rounded.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
     /// The disk.
     pub fn disk(&self) -> &Disk {
         &self.disk
@@ -202,6 +197,31 @@ impl Scene {
     pub fn tolerance(&self) -> f64 {
         self.tolerance
     }
+}
+
+/// What `read_as` makes of the built-in scene of that name, or else of the file at that path.
+fn load_text<T>(
+    path: &Path,
+    read_as: impl Fn(&str) -> Result<T, SceneError>,
+) -> Result<T, SceneError> {
+    let builtin = builtins()
+        .iter()
+        .find(|builtin| path.to_str() == Some(builtin.name()));
+    if let Some(builtin) = builtin {
+        return read_as(builtin.toml());
+    }
+    let text = read(path).map_err(|error| {
+        let path = path.to_owned();
+        if error.kind() == io::ErrorKind::NotFound {
+            SceneError::Unknown { path }
+        } else {
+            SceneError::Read { path, error }
+        }
+    })?;
+    read_as(&text).map_err(|error| SceneError::InFile {
+        path: path.to_owned(),
+        error: Box::new(error),
+    })
 }
 
 /// A scene's file has some lines; what is longer than this is something else, and may have no end.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::file::{CameraTable, DiskTable, SceneFile};
+use super::file::ImageTable;
 use super::vector::{cosine, direction, norm};
 use super::{Camera, Disk, ImageSize, Scene, SceneError};
 
@@ -42,23 +42,38 @@ const SAME_POINT: f64 = 4.0 * f64::EPSILON;
 /// product's terms are rounded, together by up to about 4ε, so that less than two bits of it would be right.
 const PARALLEL: f64 = 16.0 * f64::EPSILON;
 
-/// The checked scene.
+/// What a scene says of its pictures, checked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Picture {
+    pub(super) size: ImageSize,
+    pub(super) antialias: bool,
+    pub(super) tolerance: f64,
+}
+
+/// What is said of the pictures.
+///
+/// # Errors
+/// One [`SceneError`] for the first value that is not allowed.
+pub(super) fn picture(table: &ImageTable) -> Result<Picture, SceneError> {
+    Ok(Picture {
+        tolerance: tolerance(table.tolerance)?,
+        size: image_size(table.width, table.height)?,
+        antialias: table.antialias,
+    })
+}
+
+/// The checked scene, of a camera whose position has the length `radius`.
 ///
 /// # Errors
 /// One [`SceneError`] for the first value that is not allowed, in the order of the file.
-pub(super) fn scene(file: SceneFile) -> Result<Scene, SceneError> {
-    let SceneFile {
-        camera,
-        disk,
-        image,
-    } = file;
-    let camera = self::camera(&camera)?;
-    let disk = self::disk(&disk)?;
-    let antialias = image.antialias;
-    let tolerance = tolerance(image.tolerance)?;
-    let image = image_size(image.width, image.height)?;
-
-    let radius = norm(camera.position);
+pub(super) fn scene(
+    camera: Camera,
+    radius: f64,
+    disk: Disk,
+    picture: Picture,
+) -> Result<Scene, SceneError> {
+    check_camera(&camera, radius)?;
+    check_disk(&disk)?;
     if cosine(camera.position, disk.normal).abs() <= IN_PLANE
         && disk.inner <= radius
         && radius <= disk.outer
@@ -69,10 +84,16 @@ pub(super) fn scene(file: SceneFile) -> Result<Scene, SceneError> {
             outer: disk.outer,
         });
     }
+    let Picture {
+        size,
+        antialias,
+        tolerance,
+    } = picture;
     Ok(Scene {
         camera,
+        radius,
         disk,
-        image,
+        image: size,
         antialias,
         tolerance,
     })
@@ -112,21 +133,24 @@ pub(super) fn image_size(width: i64, height: i64) -> Result<ImageSize, SceneErro
     Ok(size)
 }
 
-fn camera(table: &CameraTable) -> Result<Camera, SceneError> {
-    let camera = Camera {
-        position: finite_vector("camera.position", table.position)?,
-        focus: finite_vector("camera.focus", table.focus)?,
-        up: finite_direction("camera.up", table.up)?,
-        fov_degrees: finite("camera.fov", table.fov)?,
-    };
-
-    let radius = norm(camera.position);
-    if radius <= HORIZON_RADIUS {
-        return Err(SceneError::InsideHorizon { radius });
-    }
+/// A radius where a camera can stand.
+///
+/// # Errors
+/// [`SceneError::InsideHorizon`], [`SceneError::TooFar`].
+pub(super) fn radius(radius: f64) -> Result<(), SceneError> {
+    // Not so of what is not a number either.
     if radius > FARTHEST_CAMERA {
         return Err(SceneError::TooFar { radius });
     }
+    if radius > HORIZON_RADIUS {
+        Ok(())
+    } else {
+        Err(SceneError::InsideHorizon { radius })
+    }
+}
+
+fn check_camera(camera: &Camera, radius: f64) -> Result<(), SceneError> {
+    self::radius(radius)?;
     let view = camera.focus - camera.position;
     if norm(view) <= SAME_POINT * radius {
         return Err(SceneError::NoView);
@@ -134,20 +158,17 @@ fn camera(table: &CameraTable) -> Result<Camera, SceneError> {
     if norm(direction(view).cross(direction(camera.up))) <= PARALLEL {
         return Err(SceneError::UpAlongView);
     }
-    if !(camera.fov_degrees > 0.0 && camera.fov_degrees < 180.0) {
-        return Err(SceneError::Fov {
-            fov: camera.fov_degrees,
-        });
+    let fov = finite("camera.fov", camera.fov_degrees)?;
+    if fov > 0.0 && fov < 180.0 {
+        Ok(())
+    } else {
+        Err(SceneError::Fov { fov })
     }
-    Ok(camera)
 }
 
-fn disk(table: &DiskTable) -> Result<Disk, SceneError> {
-    let disk = Disk {
-        inner: finite("disk.inner", table.inner)?,
-        outer: finite("disk.outer", table.outer)?,
-        normal: finite_direction("disk.normal", table.normal)?,
-    };
+fn check_disk(disk: &Disk) -> Result<(), SceneError> {
+    finite("disk.inner", disk.inner)?;
+    finite("disk.outer", disk.outer)?;
     if disk.inner < ISCO_RADIUS {
         return Err(SceneError::InnerBelowIsco { inner: disk.inner });
     }
@@ -160,10 +181,14 @@ fn disk(table: &DiskTable) -> Result<Disk, SceneError> {
             outer: disk.outer,
         });
     }
-    Ok(disk)
+    Ok(())
 }
 
-fn finite(key: &'static str, value: f64) -> Result<f64, SceneError> {
+/// A number that is one.
+///
+/// # Errors
+/// [`SceneError::NotFinite`]
+pub(super) fn finite(key: &'static str, value: f64) -> Result<f64, SceneError> {
     if value.is_finite() {
         Ok(value)
     } else {
@@ -171,14 +196,28 @@ fn finite(key: &'static str, value: f64) -> Result<f64, SceneError> {
     }
 }
 
-fn finite_vector(key: &'static str, components: [f64; 3]) -> Result<DVec3, SceneError> {
+/// A vector of [such](finite) numbers.
+///
+/// # Errors
+/// [`SceneError::NotFinite`]
+pub(super) fn finite_vector(
+    key: &'static str,
+    components: [f64; 3],
+) -> Result<DVec3, SceneError> {
     for value in components {
         finite(key, value)?;
     }
     Ok(DVec3::from_array(components))
 }
 
-fn finite_direction(key: &'static str, components: [f64; 3]) -> Result<DVec3, SceneError> {
+/// Such a vector that points anywhere.
+///
+/// # Errors
+/// [`SceneError::NotFinite`], [`SceneError::ZeroDirection`]
+pub(super) fn finite_direction(
+    key: &'static str,
+    components: [f64; 3],
+) -> Result<DVec3, SceneError> {
     let v = finite_vector(key, components)?;
     if v == DVec3::ZERO {
         Err(SceneError::ZeroDirection { key })
