@@ -6,14 +6,15 @@ mod interleaved;
 
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
-use darkness::render::batch::Batch;
-use darkness::render::{RenderError, coverage, mask};
-use darkness::scene::{Scene, View};
+use darkness::render::batch::{self, Curved, Drawn};
+use darkness::render::{coverage, mask};
+use darkness::scene::animation::FrameRange;
+use darkness::scene::{Animation, Scene, View, builtins};
 use interleaved::{Contender, compare};
 use rayon::prelude::*;
 
 /// How many frames are drawn at once.
-const FRAMES: usize = 24;
+const FRAMES: u32 = 24;
 
 /// As much work as a frame, without any memory.
 fn arithmetic(seed: usize) -> f64 {
@@ -30,10 +31,10 @@ fn main() {
         return;
     };
     // What two threads of this machine are worth, when nothing but registers is shared out.
-    let work = || (0..FRAMES).into_par_iter().map(arithmetic).sum();
+    let work = || (0..FRAMES as usize).into_par_iter().map(arithmetic).sum();
     compare(
         "arithmetic alone, time per share",
-        FRAMES,
+        FRAMES as usize,
         51,
         &mut [
             Contender {
@@ -83,21 +84,29 @@ fn main() {
             if width > 1920 {
                 continue;
             }
-            let views = [view; FRAMES];
+            let text = format!("{}\n[animation]\nframes = {FRAMES}\n", builtins()[0].toml());
+            let animation =
+                Animation::from_toml(&text).and_then(|still| still.with_antialias(antialias));
+            let Ok(animation) = animation else {
+                return;
+            };
             let (alone, side_by_side) = (
-                Batch::new(&curves, antialias),
-                Batch::new(&curves, antialias),
+                Curved::new(&animation, &Exact),
+                Curved::new(&animation, &Exact),
             );
-            let draw = |batch: &Batch<'_>| {
-                let drawn = batch.draw(&views, |_, frame| {
-                    std::hint::black_box(frame);
-                    Ok::<_, RenderError>(())
-                });
-                drawn.map_or(0.0, |()| FRAMES as f64)
+            let draw = |frames: &Curved<'_, Exact>| {
+                let all = FrameRange::up_to(FRAMES);
+                let done = |drawn: Drawn<'_>| {
+                    drawn.pixels.map(|(frame, _)| {
+                        std::hint::black_box(frame);
+                    })
+                };
+                let drawn = batch::draw(frames, (all.iter(), all.count()), |_| true, done);
+                drawn.map_or(0.0, |()| f64::from(FRAMES))
             };
             compare(
                 &format!("the same, {FRAMES} frames, time per frame"),
-                FRAMES,
+                FRAMES as usize,
                 21,
                 &mut [
                     Contender {

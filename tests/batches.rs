@@ -1,130 +1,193 @@
-//! Guards against frames that depend on what is drawn beside them, and on how many threads draw.
+//! Guards against frames that depend on what is drawn beside them, on how many threads draw, and on where a worker begins.
 
 use core::sync::atomic::{AtomicUsize, Ordering};
+use std::collections::BTreeMap;
 use std::sync::Mutex;
 
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
-use darkness::render::batch::Batch;
-use darkness::render::{RenderError, coverage, mask, pixelwise};
-use darkness::scene::{Scene, View};
+use darkness::render::batch::{self, Curved, Drawn, FrameError, Frames, RayByRay};
+use darkness::render::{coverage, mask, pixelwise};
+use darkness::scene::animation::FrameRange;
+use darkness::scene::{Animation, Scene, View};
 
-/// Cameras of one radius, to the last bit, that look here and there through several lenses.
-fn scenes(count: usize) -> Vec<Scene> {
-    let near = |x: f64, y: f64| format!("{x:?}, {y:?}");
-    (0..count)
-        .map(|i| {
-            let side = [
-                near(29.5442, 0.0),
-                near(0.0, 29.5442),
-                near(-29.5442, 0.0),
-                near(0.0, -29.5442),
-            ];
-            let (height, fov) = ([5.2094, -5.2094][i % 2], 12.0 + 5.0 * (i % 5) as f64);
-            let focus = near(0.5 * (i % 3) as f64, 0.25 * (i % 7) as f64);
-            let text = format!(
-                "[camera]\nposition = [{}, {height:?}]\nfocus = [{focus}, 0.0]\nfov = {fov:?}\n\
-                 [disk]\ninner = 3.0\nouter = 12.0\n[image]\nwidth = 150\nheight = 140\n",
-                side[i % 4]
-            );
-            Scene::from_toml(&text).unwrap_or_else(|error| panic!("{error}\n{text}"))
-        })
-        .collect()
+/// A built-in animation, small, so many of its frames long.
+fn animation(name: &str, frames: u32) -> Animation {
+    let text = Animation::load(name).unwrap().to_toml();
+    let long = text
+        .lines()
+        .find(|line| line.starts_with("frames"))
+        .unwrap();
+    let text = text.replace(long, &format!("frames = {frames}"));
+    Animation::from_toml(&text)
+        .unwrap()
+        .with_size(160, 90)
+        .unwrap()
 }
 
-/// The views, and curves that serve them all.
-fn views_and_curves(scenes: &[Scene]) -> (Vec<View>, Isoradials) {
-    let views: Vec<View> = scenes.iter().map(View::new).collect();
-    let sights = scenes.iter().zip(&views);
-    let sights = sights.map(|(scene, view)| Sight::new(scene, view, scene.tolerance()));
-    let all = sights.reduce(|a, b| a.and(&b).unwrap()).unwrap();
-    (views, Isoradials::new(&all, &Exact))
+/// The frames of a range, drawn on so many threads.
+fn drawn(frames: &impl Frames, range: &str, threads: usize) -> BTreeMap<u32, Vec<u8>> {
+    let range: FrameRange = range.parse().unwrap();
+    let all = Mutex::new(BTreeMap::new());
+    let places = Mutex::new(Vec::new());
+    let done = |drawn: Drawn<'_>| {
+        let (pixels, effort) = drawn.pixels?;
+        assert!(!effort.ray_by_ray);
+        places.lock().unwrap().push((drawn.number, drawn.place));
+        all.lock().unwrap().insert(drawn.number, pixels.to_vec());
+        Ok::<(), FrameError>(())
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.unwrap()
+        .install(|| batch::draw(frames, (range.iter(), range.count()), |_| true, done))
+        .unwrap();
+    let mut places = places.into_inner().unwrap();
+    places.sort_unstable();
+    let begun: Vec<_> = range.iter().zip(0..).collect();
+    assert_eq!(places, begun, "frames are begun in order, each once");
+    all.into_inner().unwrap()
 }
 
 #[test]
-fn a_frame_of_a_batch_is_the_frame_alone() {
-    for count in [1, 3, 20] {
-        let (views, curves) = views_and_curves(&scenes(count));
-        for (antialias, threads) in [(true, 1), (true, 3), (false, 2)] {
-            let pool = rayon::ThreadPoolBuilder::new();
-            let pool = pool.num_threads(threads).build().unwrap();
-            let batch = Batch::new(&curves, antialias);
-            // Twice, the second time into the memory of the first.
-            for _ in 0..2 {
-                let frames = Mutex::new(vec![Vec::new(); count]);
-                let drawn = pool.install(|| {
-                    batch.draw(&views, |index, pixels| {
-                        frames.lock().unwrap()[index] = pixels.to_vec();
-                        Ok::<_, RenderError>(())
-                    })
-                });
-                drawn.unwrap();
-                for (frame, view) in frames.into_inner().unwrap().iter().zip(&views) {
-                    let alone = if antialias {
-                        coverage::render(view, &curves)
-                    } else {
-                        mask::render(view, &curves)
-                    };
+fn a_frame_is_the_same_alone_in_a_chunk_and_among_all() {
+    for name in ["orbit", "approach", "tilt"] {
+        for antialias in [true, false] {
+            let animation = animation(name, 300).with_antialias(antialias).unwrap();
+            // A worker anew for each, as another process is.
+            let all = drawn(&Curved::new(&animation, &Exact), "1-300x9", 3);
+            for (range, threads) in [("1-300x9", 1), ("253-262:9", 2), ("1-30x9,298-300x9", 3)] {
+                let some = drawn(&Curved::new(&animation, &Exact), range, threads);
+                assert!(!some.is_empty());
+                for (number, pixels) in some {
                     assert!(
-                        *frame == alone.unwrap(),
-                        "{count} frames, {threads} threads"
+                        all.get(&number).is_none_or(|frame| *frame == pixels),
+                        "{name}, frame {number}, {range}, {threads} threads"
                     );
+                }
+            }
+            for number in [1, 253, 262] {
+                let alone = drawn(&Curved::new(&animation, &Exact), &number.to_string(), 2);
+                if let Some(frame) = all.get(&number) {
+                    assert!(*frame == alone[&number], "{name}, frame {number}");
                 }
             }
         }
     }
 }
 
-/// Guards against curves that are kept for a view that they do not serve, and drawn anew for one that they do.
+/// Guards against curves that are kept for a view which they do not serve: shared ones draw the masks that each pixel's
+/// ray does.
 #[test]
-fn curves_serve_every_view_of_their_radius() {
-    let scenes = scenes(20);
-    let (views, curves) = views_and_curves(&scenes);
-    for (scene, view) in scenes.iter().zip(&views) {
-        let sight = Sight::new(scene, view, scene.tolerance());
-        assert!(curves.serves(&sight));
-        // Not the other way round: none of these views shows all that the others do.
-        let own = Isoradials::new(&sight, &Exact);
-        assert!(
-            own.serves(&sight)
-                && !views.iter().zip(&scenes).all(|(view, scene)| {
-                    own.serves(&Sight::new(scene, view, scene.tolerance()))
-                })
-        );
-        let exact = pixelwise::render(scene, view, &Exact, &|| ()).unwrap();
-        assert!(mask::render(view, &curves).unwrap() == exact);
+fn shared_curves_draw_what_a_frames_own_do() {
+    let zoom = "[camera]\nposition = [29.5442, 0, 5.2094]\nfov = 40\n[disk]\ninner = 3\nouter = 12\n\
+        [image]\nwidth = 150\nheight = 140\nantialias = false\n[animation]\nframes = 24\n\
+        [[animation.keyframe]]\nframe = 1\nfov = 40\nposition = [29.5442, 0, 5.2094]\n\
+        [[animation.keyframe]]\nframe = 24\nfov = 12\nfocus = [0, 3, 1]\nposition = [0, -29.5442, -5.2094]\n";
+    for animation in [
+        animation("orbit", 24).with_antialias(false).unwrap(),
+        Animation::from_toml(zoom).unwrap(),
+    ] {
+        let frames = drawn(&Curved::new(&animation, &Exact), "1-24", 2);
+        let by_rays = drawn(&RayByRay::new(&animation, &Exact, &|| ()), "1-24", 2);
+        assert!(frames == by_rays);
+        for (number, frame) in frames {
+            let scene = animation.frame(number).unwrap();
+            let view = View::new(&scene);
+            let sight = Sight::new(&scene, &view, scene.tolerance());
+            let own = Isoradials::new(&sight, &Exact);
+            // Where an edge passes a pixel's centre as closely as the tolerance, either is right.
+            let mask = mask::render(&view, &own).unwrap();
+            let others = mask.iter().zip(&frame).filter(|(a, b)| a != b).count();
+            assert!(others <= 1, "frame {number}: {others} pixels");
+            // Smooth pixels over which an edge bends may be cut up otherwise: a hundredth.
+            let smooth = coverage::render(&view, &own).unwrap();
+            let shared = animation.clone().with_antialias(true).unwrap();
+            let shared = drawn(&Curved::new(&shared, &Exact), &number.to_string(), 1);
+            let apart = |(a, b): (&u8, &u8)| a.abs_diff(*b);
+            let most = smooth.iter().zip(&shared[&number]).map(apart).max();
+            assert!(most <= Some(3), "frame {number}: {most:?}");
+        }
     }
-    let farther = Scene::from_toml(
-        "[camera]\nposition = [29.5443, 0.0, 5.2094]\nfov = 12.0\n[disk]\ninner = 3.0\nouter = 12.0\n\
-         [image]\nwidth = 150\nheight = 140\n",
-    );
-    let farther = farther.unwrap();
-    let sight = Sight::new(&farther, &View::new(&farther), farther.tolerance());
-    assert!(!curves.serves(&sight));
-    let finer = Sight::new(&scenes[0], &views[0], 0.1 * scenes[0].tolerance());
-    assert!(!curves.serves(&finer));
 }
 
-/// Guards against a failure that is lost, or that a whole batch is drawn after.
 #[test]
-fn a_failure_ends_the_batch() {
-    let (views, curves) = views_and_curves(&scenes(20));
-    let views: Vec<View> = views.iter().cycle().take(400).copied().collect();
-    let (batch, begun) = (Batch::new(&curves, false), AtomicUsize::new(0));
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
-    let drawn = pool.unwrap().install(|| {
-        batch.draw(&views, |index, _| {
+fn a_scene_that_does_not_move_is_the_picture() {
+    let still = Animation::load("classic")
+        .unwrap()
+        .with_size(160, 90)
+        .unwrap();
+    let frame = drawn(&Curved::new(&still, &Exact), "1", 2);
+    let scene = Scene::load("classic").unwrap().with_size(160, 90).unwrap();
+    let view = View::new(&scene);
+    let sight = Sight::new(&scene, &view, scene.tolerance());
+    let curves = Isoradials::new(&sight, &Exact);
+    assert!(frame[&1] == coverage::render(&view, &curves).unwrap());
+    let hard = still.with_antialias(false).unwrap();
+    let frame = drawn(&Curved::new(&hard, &Exact), "1", 2);
+    assert!(frame[&1] == pixelwise::render(&scene, &view, &Exact, &|| ()).unwrap());
+}
+
+/// Guards against a failure that is lost, or that a whole batch is drawn after, and against one that stops the others where it
+/// should not.
+#[test]
+fn a_failure_ends_the_batch_if_it_is_told_to() {
+    let orbit = animation("orbit", 400);
+    // A camera that comes to the horizon at frame 361.
+    let falling = orbit
+        .to_toml()
+        .replace("radius = 30.0", "radius = [10.0, 0.0]");
+    let falling = falling.replace("frames = 400", "frames = 401\ninterpolation = \"linear\"");
+    let falling = falling.replacen("interpolation = \"smooth\"\n", "", 1);
+    let falling = Animation::from_toml(&falling).unwrap();
+    let frames = Curved::new(&falling, &Exact);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(2)
+        .build()
+        .unwrap();
+    for stop in [true, false] {
+        let (begun, failed) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        let done = |drawn: Drawn<'_>| {
             begun.fetch_add(1, Ordering::Relaxed);
-            match index {
-                7 => Err(RenderError::Memory {
-                    width: 1,
-                    height: 2,
-                    bytes: 3,
-                }),
+            if drawn.pixels.is_err() {
+                failed.fetch_add(1, Ordering::Relaxed);
+            }
+            match drawn.pixels {
+                Err(error) if stop => Err((drawn.number, error)),
                 _ => Ok(()),
             }
-        })
-    });
-    assert!(matches!(drawn, Err(RenderError::Memory { bytes: 3, .. })));
-    assert!(begun.into_inner() < 400);
+        };
+        let range = FrameRange::up_to(401);
+        let run = || batch::draw(&frames, (range.iter(), range.count()), |_| true, done);
+        let ended = pool.install(run);
+        assert_eq!(ended.is_err(), stop);
+        if stop {
+            let (number, error) = ended.unwrap_err();
+            assert!((361..=362).contains(&number), "{number}");
+            assert!(error.to_string().contains("horizon"), "{error}");
+            assert!(begun.into_inner() <= 363);
+        } else {
+            assert_eq!((begun.into_inner(), failed.into_inner()), (401, 41));
+        }
+    }
+}
+
+#[test]
+fn frames_that_are_not_wanted_are_passed_over() {
+    let orbit = animation("orbit", 40);
+    let drawn = Mutex::new(Vec::new());
+    let done = |frame: Drawn<'_>| {
+        drawn.lock().unwrap().push(frame.number);
+        frame.pixels.map(|_| ())
+    };
+    let range = FrameRange::up_to(40);
+    batch::draw(
+        &Curved::new(&orbit, &Exact),
+        (range.iter(), range.count()),
+        |number| number % 10 == 3,
+        done,
+    )
+    .unwrap();
+    let mut drawn = drawn.into_inner().unwrap();
+    drawn.sort_unstable();
+    assert_eq!(drawn, [3, 13, 23, 33]);
 }

@@ -38,7 +38,7 @@ pub(super) struct ChartArgs {
 /// Runs the verb.
 pub(super) fn run(args: &ChartArgs, report: Report) -> anyhow::Result<()> {
     let scene = Scene::load(&args.scene)?;
-    let destination = Destination::checked(args.output.clone(), "svg", &args.scene)?;
+    let destination = Destination::checked(args.output.clone(), ".svg", &args.scene)?;
     if let Some(path) = &args.csv {
         check_csv(path, &args.output, &args.scene)?;
     }

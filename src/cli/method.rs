@@ -92,11 +92,11 @@ impl AnyTable {
         }
     }
 
-    /// How many bytes the table has.
-    pub(super) fn bytes(&self) -> usize {
+    /// The table's file.
+    pub(super) fn bytes(&self) -> &[u8] {
         match self {
-            Self::Mapped(table) => table.bytes().len(),
-            Self::Made(table) => table.bytes().len(),
+            Self::Mapped(table) => table.bytes(),
+            Self::Made(table) => table.bytes(),
         }
     }
 
@@ -184,6 +184,17 @@ enum Origin {
 }
 
 impl Checked {
+    /// The method, if nothing is missing.
+    ///
+    /// # Errors
+    /// [`TableError::Missing`]
+    pub(super) fn without_making(self) -> Result<Method, TableError> {
+        match self {
+            Self::Ready(method) => Ok(method),
+            Self::TableMissing { path, .. } => Err(TableError::Missing { path }),
+        }
+    }
+
     /// The method, after its table is made where it is missing.
     ///
     /// # Errors
@@ -210,6 +221,25 @@ impl Checked {
         }
         Ok(Method::Table(AnyTable::Made(table)))
     }
+}
+
+impl Method {
+    /// What a frame's bytes depend on, beside its scene: the SHA-256 of the table's file, or the method in place of one.
+    pub(super) fn fingerprint(&self) -> String {
+        match self {
+            Self::Table(table) => hex(table.bytes()),
+            Self::NoTable => "none, exact curves".into(),
+            Self::Exact => "none, exact rays".into(),
+            Self::Integrate(method) => format!("none, integrated to {:e}", method.tolerance),
+        }
+    }
+}
+
+/// The SHA-256 of some bytes, as hexadecimal digits.
+pub(super) fn hex(bytes: &[u8]) -> String {
+    use sha2::Digest;
+    let digest = sha2::Sha256::digest(bytes);
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 impl fmt::Display for Method {

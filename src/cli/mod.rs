@@ -5,7 +5,8 @@
 //! quietly.
 
 mod chart;
-mod explain;
+mod interrupt;
+mod job;
 mod method;
 mod picture;
 mod progress;
@@ -21,6 +22,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
+use interrupt::Interrupted;
 use progress::{Report, warn};
 
 /// Renders what a black hole does to the light of its accretion disk.
@@ -42,6 +44,8 @@ const EXAMPLES: &str = "\
 Examples:
   darkness render                            the scene `classic`, as classic.png
   darkness render edge-on --size 3840x2160 -o large.png
+  darkness render orbit -o 'out/f_####.png'  an animation, a file for each frame
+  darkness render orbit -o - --format y4m | ffmpeg -i - orbit.mp4
   darkness scene classic > mine.toml         a scene to start from
   darkness render mine.toml
   darkness table fine                        the most accurate table
@@ -49,7 +53,7 @@ Examples:
   printf 'u0,dudphi\\n0.03,0.1\\n' | darkness trace
   darkness chart --quick                     speed against accuracy on this machine, as chart.svg
 
-Exit codes: 0 done, 1 failed, 2 misused.";
+Exit codes: 0 done, 1 failed, 2 misused, 130 and 143 stopped by Ctrl-C and SIGTERM.";
 
 #[derive(Debug, Subcommand)]
 enum Verb {
@@ -58,15 +62,19 @@ enum Verb {
     Trace(trace::TraceArgs),
     Scene(scene::SceneArgs),
     Chart(chart::ChartArgs),
+    Job(job::JobArgs),
 }
 
 /// A command line that says something which cannot be meant. Exits with 2, as every other usage error does.
 #[derive(Debug, thiserror::Error)]
 enum Misuse {
-    #[error("{}: the ending of a picture's name says its format, and the only one known here is .{ending}; for the standard output give `-o -`", path.display())]
-    Ending { path: PathBuf, ending: &'static str },
+    #[error("{}: the ending of the name says the format, and those known here are {endings}; for the standard output give `-o -`", path.display())]
+    Ending {
+        path: PathBuf,
+        endings: &'static str,
+    },
     #[error(
-        "the standard output is a terminal, which cannot show a PNG: send it to a file or a pipe, or give -o a file's name"
+        "the standard output is a terminal, which cannot show pictures: send it to a file or a pipe, or give -o a file's name"
     )]
     PictureToTerminal,
     #[error("{}: {option} names the {what} that is read; choose another name for what is written", path.display())]
@@ -75,6 +83,35 @@ enum Misuse {
         path: PathBuf,
         what: &'static str,
     },
+    #[error(
+        "{}: {count} frames do not fit one picture: give the name a place for the number, as in f_####.png or f_%04d.png, choose one frame with --frames, or make a film with --format y4m", path.display()
+    )]
+    FramesWithoutNumber { path: PathBuf, count: u64 },
+    #[error(
+        "several frames go through a pipe as a film: add --format y4m or --format raw, or choose one frame with --frames"
+    )]
+    FramesToStdout,
+    #[error("{}: a film is one file, and this is a pattern for many; leave out the number, or --format", path.display())]
+    FilmWithNumber { path: PathBuf },
+    #[error("{}: the frame's number has two places in the name; leave one", path.display())]
+    TwoNumbers { path: PathBuf },
+    #[error("{}: the frame's number belongs in the file's name, not in a folder's", path.display())]
+    NumberInFolder { path: PathBuf },
+    #[error("{}: the frame's number is filled up to {widest} digits at most", path.display())]
+    WideNumber { path: PathBuf, widest: usize },
+    #[error("--frames {range}: {source}")]
+    Frames {
+        range: String,
+        source: crate::scene::SceneError,
+    },
+    #[error("--explain tells of one frame: choose one with --frames")]
+    ExplainsOne,
+    #[error("{}: the scene has no [animation], and one picture needs no farm: `darkness render` draws it", path.display())]
+    StillJob { path: PathBuf },
+    #[error("{}: a job is a text, and this name has characters that cannot stand in one", path.display())]
+    UnprintablePath { path: PathBuf },
+    #[error("--require-table is about a table, which only --method table reads")]
+    TableUnused,
     #[error("{}: -o and --csv name one file; give each its own", path.display())]
     OneFileForTwo { path: PathBuf },
     #[error("the CSV goes to a file, not to the standard output: give --csv a file's name")]
@@ -153,6 +190,7 @@ pub fn run() -> ExitCode {
         Verb::Trace(args) => trace::run(&args, report),
         Verb::Scene(args) => scene::run(&args),
         Verb::Chart(args) => chart::run(&args, report),
+        Verb::Job(args) => job::run(&args, report),
     };
     let checked = crate::lanes::check_environment()
         .map_err(|name| anyhow::Error::new(Misuse::InstructionSet { name }));
@@ -167,7 +205,11 @@ pub fn run() -> ExitCode {
         }
         Err(error) => {
             warn(&error);
-            ExitCode::from(if error.is::<Misuse>() { 2 } else { 1 })
+            ExitCode::from(match error.downcast_ref::<Interrupted>() {
+                Some(interrupted) => interrupted.code(),
+                None if error.is::<Misuse>() => 2,
+                None => 1,
+            })
         }
     }
 }

@@ -1,14 +1,11 @@
 //! Where a picture goes.
 
-use std::ffi::OsString;
 use std::fmt;
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::{Misuse, StdoutError, target};
 use crate::output::write_whole;
-use crate::render::png;
-use crate::scene::ImageSize;
 
 /// Where a picture goes, checked.
 #[derive(Debug)]
@@ -18,19 +15,7 @@ pub(super) enum Destination {
 }
 
 impl Destination {
-    /// The place that `-o` names, or else the scene's name with .png in the current folder.
-    ///
-    /// # Errors
-    /// What stands in the way of a picture there.
-    pub(super) fn new(output: Option<&Path>, scene: &Path) -> anyhow::Result<Self> {
-        let path = output.map_or_else(|| default_name(scene), Path::to_owned);
-        if path == Path::new("-") && io::stdout().is_terminal() {
-            return Err(Misuse::PictureToTerminal.into());
-        }
-        Self::checked(path, "png", scene)
-    }
-
-    /// The place `path`, for a picture of that ending that is made of `scene`; - is the standard output.
+    /// The place `path`, for a picture of that ending, with its dot, that is made of `scene`; - is the standard output.
     ///
     /// # Errors
     /// What stands in the way of a picture there.
@@ -44,9 +29,13 @@ impl Destination {
         }
         let has_ending = path
             .extension()
-            .is_some_and(|its| its.eq_ignore_ascii_case(ending));
+            .is_some_and(|its| its.eq_ignore_ascii_case(&ending[1..]));
         if !has_ending {
-            return Err(Misuse::Ending { path, ending }.into());
+            return Err(Misuse::Ending {
+                path,
+                endings: ending,
+            }
+            .into());
         }
         if target::same_file(&path, scene) {
             return Err(Misuse::OntoInput {
@@ -73,15 +62,6 @@ impl Destination {
             }),
             _ => Ok(()),
         }
-    }
-
-    /// Writes the picture as a grey PNG: a file whole or not at all.
-    ///
-    /// # Errors
-    /// What the system says.
-    pub(super) fn write_png(&self, pixels: &[u8], size: ImageSize) -> anyhow::Result<()> {
-        let ImageSize { width, height } = size;
-        self.write(&png::encode(pixels, width, height)?)
     }
 
     /// Writes a picture's bytes: a file whole or not at all.
@@ -112,13 +92,4 @@ impl fmt::Display for Destination {
             Self::File(path) => write!(f, "{}", path.display()),
         }
     }
-}
-
-/// `mine.toml` gives `mine.png`, `classic` gives `classic.png`.
-fn default_name(scene: &Path) -> PathBuf {
-    let mut name = scene
-        .file_stem()
-        .map_or_else(|| OsString::from("picture"), OsString::from);
-    name.push(".png");
-    name.into()
 }

@@ -26,6 +26,12 @@ pub(super) enum TargetError {
     IsAFolder { path: PathBuf, option: &'static str },
     #[error("{} is no regular file, and would be replaced by one; choose another place with {option}", path.display())]
     Special { path: PathBuf, option: &'static str },
+    #[error("{}: about {} are needed there, and {} are free: make room, choose another place with -o, or fewer frames with --frames", folder.display(), size(*bytes), size(*room))]
+    NoRoom {
+        folder: PathBuf,
+        bytes: u64,
+        room: u64,
+    },
     #[error("{}: nothing can be written to the folder {} ({source}); choose another place with {option}", path.display(), folder.display())]
     Unwritable {
         path: PathBuf,
@@ -33,6 +39,18 @@ pub(super) enum TargetError {
         option: &'static str,
         source: io::Error,
     },
+}
+
+/// A number of bytes in a unit that suits it.
+fn size(bytes: u64) -> String {
+    let units = ["bytes", "kB", "MB", "GB", "TB", "PB"];
+    let mut value = bytes as f64;
+    let mut unit = 0;
+    while value >= 1000.0 && unit + 1 < units.len() {
+        value /= 1000.0;
+        unit += 1;
+    }
+    format!("{value:.*} {}", usize::from(unit > 0), units[unit])
 }
 
 /// Checks that `path`, which `option` names, can be written, in a folder that exists.
@@ -105,6 +123,41 @@ fn check_within(path: &Path, folder: &Path, option: &'static str) -> Result<(), 
     // behind.
     tempfile::tempfile_in(folder).map_err(unwritable)?;
     Ok(())
+}
+
+/// How much room there is for files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Room {
+    /// So many bytes.
+    Known(u64),
+    /// The system does not say.
+    Unknown,
+}
+
+/// The room for files in a folder; the current one if it has no name.
+pub(super) fn room(folder: &Path) -> Room {
+    #[cfg(unix)]
+    if let Ok(disk) = rustix::fs::statvfs(or_current(folder)) {
+        return Room::Known(disk.f_bavail.saturating_mul(disk.f_frsize));
+    }
+    #[cfg(not(unix))]
+    let _ = folder;
+    Room::Unknown
+}
+
+/// Checks that there is room for so many bytes beside `path`.
+///
+/// # Errors
+/// [`TargetError::NoRoom`]
+pub(super) fn check_room(path: &Path, bytes: u64) -> Result<(), TargetError> {
+    match room(folder_of(path)) {
+        Room::Known(room) if bytes > room => Err(TargetError::NoRoom {
+            folder: folder_of(path).to_owned(),
+            bytes,
+            room,
+        }),
+        _ => Ok(()),
+    }
 }
 
 /// Whether both paths lead to one file that exists.

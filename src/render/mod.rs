@@ -91,16 +91,23 @@ fn each_pixel(
 
 /// A black frame.
 fn blank(view: &View) -> Result<Vec<u8>, RenderError> {
+    let mut pixels = Vec::new();
+    blank_into(view, &mut pixels)?;
+    Ok(pixels)
+}
+
+/// Makes room for a frame: what was there may stay.
+fn blank_into(view: &View, pixels: &mut Vec<u8>) -> Result<(), RenderError> {
     let (width, height) = (view.width(), view.height());
     let bytes = width as usize * height as usize;
-    let mut pixels = Vec::new();
+    let more = bytes.saturating_sub(pixels.len());
     pixels
-        .try_reserve_exact(bytes)
+        .try_reserve_exact(more)
         .map_err(|_| RenderError::Memory {
             width,
             height,
             bytes,
         })?;
     pixels.resize(bytes, 0);
-    Ok(pixels)
+    Ok(())
 }

@@ -10,7 +10,7 @@
 
 use crate::isoradial::{Sight, sensitivity};
 use crate::orbit::exact::Exact;
-use crate::scene::{Scene, View};
+use crate::scene::{Animation, Scene, SceneError, View};
 use crate::table::Spec;
 
 /// What a scene asks of its curves and of the angles that they are drawn from.
@@ -53,6 +53,37 @@ impl Needs {
             sensitivity,
             tables: Spec::NAMES.into_iter().filter_map(candidate).collect(),
         }
+    }
+
+    /// The needs of the frame among some of an animation, evenly apart, that needs most: they depend on the animation alone, and one
+    /// table serves all its frames.
+    ///
+    /// # Errors
+    /// A frame that cannot be.
+    pub fn of_animation(animation: &Animation) -> Result<Self, SceneError> {
+        const LOOKED_AT: u64 = 9;
+        let last = u64::from(animation.frames());
+        let mut most: Option<Self> = None;
+        let mut before = 0;
+        for place in 0..LOOKED_AT {
+            let number = (1 + (last - 1) * place / (LOOKED_AT - 1)) as u32;
+            if number == before {
+                continue;
+            }
+            before = number;
+            let scene = animation.frame(number)?;
+            let needs = Self::new(&scene, &View::new(&scene));
+            if most
+                .as_ref()
+                .is_none_or(|most| needs.sensitivity > most.sensitivity)
+            {
+                most = Some(needs);
+            }
+        }
+        most.ok_or(SceneError::NoFrame {
+            number: 1,
+            frames: animation.frames(),
+        })
     }
 
     /// The smallest table that is enough; none where only exact angles are.

@@ -87,7 +87,10 @@ mod tests {
             assert_eq!(again.camera(), scene.camera());
             assert_eq!(again.disk(), scene.disk());
             let animation = Animation::from_toml(builtin.toml()).unwrap();
-            assert_eq!(Animation::from_toml(&animation.to_toml()).unwrap(), animation);
+            assert_eq!(
+                Animation::from_toml(&animation.to_toml()).unwrap(),
+                animation
+            );
             for number in 1..=animation.frames() {
                 animation.check(number).unwrap();
             }

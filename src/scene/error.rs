@@ -36,13 +36,17 @@ pub enum SceneError {
     )]
     OrbitAndPosition,
     /// The number of frames is not allowed.
-    #[error("animation.frames = {frames} is not allowed: an animation has 1 to {MAX_FRAMES} frames")]
+    #[error(
+        "animation.frames = {frames} is not allowed: an animation has 1 to {MAX_FRAMES} frames"
+    )]
     Frames {
         /// What was asked for.
         frames: i64,
     },
     /// The frames' rate is not allowed.
-    #[error("animation.fps = {fps:?} is not allowed: it is from 0.001 to 1000 frames a second; 24 is the default")]
+    #[error(
+        "animation.fps = {fps:?} is not allowed: it is from 0.001 to 1000 frames a second; 24 is the default"
+    )]
     Fps {
         /// What was asked for.
         fps: f64,
@@ -56,7 +60,9 @@ pub enum SceneError {
         frames: u32,
     },
     /// Keyframes do not follow one another.
-    #[error("the keyframe at frame {number} comes after the one at frame {before}: each keyframe's frame must be above the one before")]
+    #[error(
+        "the keyframe at frame {number} comes after the one at frame {before}: each keyframe's frame must be above the one before"
+    )]
     KeyframeOrder {
         /// The keyframe's number.
         number: i64,
@@ -64,7 +70,9 @@ pub enum SceneError {
         before: i64,
     },
     /// A keyframe names nothing.
-    #[error("the keyframe at frame {number} says nothing: give it a position, focus, up, fov or normal")]
+    #[error(
+        "the keyframe at frame {number} says nothing: give it a position, focus, up, fov or normal"
+    )]
     KeyframeEmpty {
         /// The keyframe's number.
         number: i64,

@@ -73,7 +73,7 @@ pub(super) fn scene(
     picture: Picture,
 ) -> Result<Scene, SceneError> {
     check_camera(&camera, radius)?;
-    check_disk(&disk)?;
+    self::disk(disk.inner, disk.outer)?;
     if cosine(camera.position, disk.normal).abs() <= IN_PLANE
         && disk.inner <= radius
         && radius <= disk.outer
@@ -166,20 +166,21 @@ fn check_camera(camera: &Camera, radius: f64) -> Result<(), SceneError> {
     }
 }
 
-fn check_disk(disk: &Disk) -> Result<(), SceneError> {
-    finite("disk.inner", disk.inner)?;
-    finite("disk.outer", disk.outer)?;
-    if disk.inner < ISCO_RADIUS {
-        return Err(SceneError::InnerBelowIsco { inner: disk.inner });
+/// Edges that a disk can have.
+///
+/// # Errors
+/// One [`SceneError`] for the first value that is not allowed.
+pub(super) fn disk(inner: f64, outer: f64) -> Result<(), SceneError> {
+    finite("disk.inner", inner)?;
+    finite("disk.outer", outer)?;
+    if inner < ISCO_RADIUS {
+        return Err(SceneError::InnerBelowIsco { inner });
     }
-    if disk.outer > WIDEST_DISK {
-        return Err(SceneError::TooWide { outer: disk.outer });
+    if outer > WIDEST_DISK {
+        return Err(SceneError::TooWide { outer });
     }
-    if disk.outer <= disk.inner {
-        return Err(SceneError::NoWidth {
-            inner: disk.inner,
-            outer: disk.outer,
-        });
+    if outer <= inner {
+        return Err(SceneError::NoWidth { inner, outer });
     }
     Ok(())
 }
@@ -200,10 +201,7 @@ pub(super) fn finite(key: &'static str, value: f64) -> Result<f64, SceneError> {
 ///
 /// # Errors
 /// [`SceneError::NotFinite`]
-pub(super) fn finite_vector(
-    key: &'static str,
-    components: [f64; 3],
-) -> Result<DVec3, SceneError> {
+pub(super) fn finite_vector(key: &'static str, components: [f64; 3]) -> Result<DVec3, SceneError> {
     for value in components {
         finite(key, value)?;
     }

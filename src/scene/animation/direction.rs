@@ -104,7 +104,11 @@ fn velocity(times: &[f64], units: &[DVec3], k: usize) -> DVec3 {
     let from = arc(units[k], units[k + 1]) / after;
     let mean = (to * after + from * before) / (before + after);
     let (speed, most) = (mean.length(), 1.5 * to.length().min(from.length()));
-    if speed > most { mean * (most / speed) } else { mean }
+    if speed > most {
+        mean * (most / speed)
+    } else {
+        mean
+    }
 }
 
 /// The arc from one unit vector to another: tangent at the first, as long as their angle. None where they are one or
@@ -166,8 +170,13 @@ mod tests {
             assert!(beside(1e-6).max(beside(-1e-6)) < 1e-5);
         }
         let step = 1e-3;
-        let places: Vec<_> = (0..12_500).map(|i| direction(moving.at(step * f64::from(i)))).collect();
-        let velocities: Vec<_> = places.windows(2).map(|pair| (pair[1] - pair[0]) / step).collect();
+        let places: Vec<_> = (0..12_500)
+            .map(|i| direction(moving.at(step * f64::from(i))))
+            .collect();
+        let velocities: Vec<_> = places
+            .windows(2)
+            .map(|pair| (pair[1] - pair[0]) / step)
+            .collect();
         for pair in velocities.windows(2) {
             assert!((pair[1] - pair[0]).length() < 5e-3, "{pair:?}");
         }
@@ -177,8 +186,13 @@ mod tests {
     #[test]
     fn opposite_directions_have_no_way_between_them() {
         let keys = [(3.0, DVec3::X), (9.0, DVec3::new(-2.0, 0.0, 1e-16))];
-        let message = Directions::new("position", &keys, Interpolation::Smooth).unwrap_err().to_string();
-        assert!(message.contains("frames 3 and 9") && message.contains("position"), "{message}");
+        let message = Directions::new("position", &keys, Interpolation::Smooth)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            message.contains("frames 3 and 9") && message.contains("position"),
+            "{message}"
+        );
         let keys = [(3.0, DVec3::X), (9.0, DVec3::new(-2.0, 0.0, 1e-3))];
         assert!(Directions::new("position", &keys, Interpolation::Smooth).is_ok());
     }

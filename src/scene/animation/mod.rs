@@ -32,6 +32,7 @@
 mod direction;
 mod orbit;
 mod position;
+mod range;
 mod rate;
 mod track;
 
@@ -45,6 +46,7 @@ use super::{Camera, Disk, Scene, SceneError, load_text, validate};
 use direction::Directions;
 use orbit::Orbit;
 use position::{Place, Position};
+pub use range::{FrameRange, FrameRangeError};
 pub use rate::Rate;
 use track::Track;
 
@@ -136,7 +138,10 @@ impl Animation {
         }
         let up = match (up, file.camera.up) {
             (Some(up), _) => Up::Given(up),
-            (None, Some(up)) => Up::Given(Directions::still(validate::finite_direction("camera.up", up)?)),
+            (None, Some(up)) => Up::Given(Directions::still(validate::finite_direction(
+                "camera.up",
+                up,
+            )?)),
             (None, None) => Up::OfOrbit,
         };
         let fov = keys.named("fov", |keyframe| keyframe.fov.map(|fov| [fov]))?;
@@ -159,6 +164,10 @@ impl Animation {
                 ..file
             },
         };
+        validate::disk(animation.inner, animation.outer)?;
+        if animation.is_still() {
+            animation.frame(1)?;
+        }
         Ok(animation)
     }
 

@@ -44,7 +44,11 @@ impl Orbit {
         };
         let first = (1.0, spans.map(|(_, span)| span.from));
         let last = (f64::from(end), spans.map(|(_, span)| span.to));
-        let keys = if end > 1 { &[first, last][..] } else { &[first] };
+        let keys = if end > 1 {
+            &[first, last][..]
+        } else {
+            &[first]
+        };
         Ok(Self {
             of_time: Track::new(keys, interpolation),
         })

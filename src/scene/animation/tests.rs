@@ -32,7 +32,11 @@ fn a_scene_that_does_not_move_is_one_frame() {
 
 #[test]
 fn a_closed_orbit_does_not_repeat_its_first_frame_and_keeps_its_radius_to_the_last_bit() {
-    for (inclination, azimuth) in [("80", "[0, 360]"), ("[10, -710]", "[5, 365]"), ("[0, 360]", "30")] {
+    for (inclination, azimuth) in [
+        ("80", "[0, 360]"),
+        ("[10, -710]", "[5, 365]"),
+        ("[0, 360]", "30"),
+    ] {
         let text = format!(
             "frames = 240\norbit = {{ radius = 29.7, inclination = {inclination}, azimuth = {azimuth} }}"
         );
@@ -47,7 +51,10 @@ fn a_closed_orbit_does_not_repeat_its_first_frame_and_keeps_its_radius_to_the_la
             let next = (place(number + 1) - place(number)).length();
             assert!(next > 0.3 * step && next < 3.0 * step);
         }
-        assert!(((place(1) - place(240)).length() - (place(240) - place(239)).length()).abs() < 0.1 * step);
+        assert!(
+            ((place(1) - place(240)).length() - (place(240) - place(239)).length()).abs()
+                < 0.1 * step
+        );
     }
 }
 
@@ -70,14 +77,19 @@ fn an_open_orbit_begins_at_from_and_ends_at_to() {
 #[test]
 fn up_of_an_orbit_is_minus_the_derivative_by_inclination() {
     let at = |inclination: f64| {
-        let text = format!("frames = 1\norbit = {{ radius = 20, inclination = {inclination:?}, azimuth = 123 }}");
+        let text = format!(
+            "frames = 1\norbit = {{ radius = 20, inclination = {inclination:?}, azimuth = 123 }}"
+        );
         *animation("", &text).unwrap().frame(1).unwrap().camera()
     };
     for inclination in [0.0, 1.0, 40.0, 90.0, 179.0, 180.0, 200.0] {
         let h = 1e-4;
         let (less, more) = (at(inclination - h), at(inclination + h));
         let derivative = (more.position - less.position) / (2.0 * h.to_radians()) / 20.0;
-        assert!((at(inclination).up + derivative).length() < 1e-8, "{inclination}");
+        assert!(
+            (at(inclination).up + derivative).length() < 1e-8,
+            "{inclination}"
+        );
     }
     // The scene's own comes first.
     let text = "frames = 1\norbit = { radius = 20, inclination = 80, azimuth = 0 }";
@@ -104,14 +116,24 @@ fn keyframes_are_met_and_what_they_leave_out_is_interpolated() {
             assert_eq!(at(number).camera().up, DVec3::new(0.0, 1.0, 1.0));
             assert_eq!(at(number).disk().normal, DVec3::new(0.0, 1.0, 9.0));
         }
-        assert_eq!((at(1).camera().fov_degrees, at(60).camera().fov_degrees), (20.0, 90.0));
+        assert_eq!(
+            (at(1).camera().fov_degrees, at(60).camera().fov_degrees),
+            (20.0, 90.0)
+        );
         assert!(at(20).camera().fov_degrees > 20.5);
         // Past the hole, not through it.
         for number in 1..=60 {
             let position = at(number).camera().position;
             assert!((position.length() - at(number).radius()).abs() < 1e-12);
-            let ends = if number < 20 { (20.0, 61.0) } else { (20.0, 22.5) };
-            assert!(position.length() > ends.0 && position.length() < ends.1, "{position}");
+            let ends = if number < 20 {
+                (20.0, 61.0)
+            } else {
+                (20.0, 22.5)
+            };
+            assert!(
+                position.length() > ends.0 && position.length() < ends.1,
+                "{position}"
+            );
         }
     }
 }
@@ -132,7 +154,11 @@ fn keyframes_of_one_radius_keep_it_to_the_last_bit() {
 fn what_is_written_reads_back() {
     let orbit = "frames = 7\nfps = 23.976\norbit = { radius = [60, 1.5], inclination = 80, azimuth = [0, 90] }\n\
         [[animation.keyframe]]\nframe = 3\nfov = 12\n";
-    for (camera, text) in [("", orbit), ("position = [20, 0, 5]", "frames = 3"), ("", KEYFRAMES)] {
+    for (camera, text) in [
+        ("", orbit),
+        ("position = [20, 0, 5]", "frames = 3"),
+        ("", KEYFRAMES),
+    ] {
         let read = animation(camera, text).unwrap();
         assert_eq!(Animation::from_toml(&read.to_toml()).unwrap(), read);
         let small = read.clone().with_size(20, 10).unwrap();
@@ -147,43 +173,96 @@ fn what_cannot_be_is_refused_with_its_frame() {
     let still = "position = [20, 0, 5]";
     refused("", "frames = 5", &["camera.position"]);
     for frames in ["0", "-3", "1000000001"] {
-        refused(still, &format!("frames = {frames}"), &["animation.frames", frames]);
+        refused(
+            still,
+            &format!("frames = {frames}"),
+            &["animation.frames", frames],
+        );
     }
     refused(still, "fps = 3", &["frames", "line"]);
     refused(still, "frames = 3\nfps = 0", &["animation.fps"]);
-    refused(still, "frames = 3\ninterpolation = \"cubic\"", &["smooth", "linear", "cubic", "line"]);
+    refused(
+        still,
+        "frames = 3\ninterpolation = \"cubic\"",
+        &["smooth", "linear", "cubic", "line"],
+    );
     refused(still, "frames = 3\nspeed = 2", &["speed", "line"]);
     let key = |frame: i32, text: &str| format!("[[animation.keyframe]]\nframe = {frame}\n{text}\n");
     let keys = |keys: &[String]| format!("frames = 30\n{}", keys.concat());
-    refused(still, &keys(&[key(31, "fov = 3")]), &["frame = 31", "1 to 30"]);
-    refused(still, &keys(&[key(0, "fov = 3")]), &["frame = 0", "1 to 30"]);
-    refused(still, &keys(&[key(5, "fov = 3"), key(5, "fov = 4")]), &["frame 5", "above"]);
+    refused(
+        still,
+        &keys(&[key(31, "fov = 3")]),
+        &["frame = 31", "1 to 30"],
+    );
+    refused(
+        still,
+        &keys(&[key(0, "fov = 3")]),
+        &["frame = 0", "1 to 30"],
+    );
+    refused(
+        still,
+        &keys(&[key(5, "fov = 3"), key(5, "fov = 4")]),
+        &["frame 5", "above"],
+    );
     refused(still, &keys(&[key(5, "")]), &["frame 5", "position", "fov"]);
-    refused(still, &keys(&[key(5, "up = [0, 0, 0]")]), &["frame 5", "up", "zero"]);
-    refused(still, &keys(&[key(5, "focus = [0, nan, 0]")]), &["frame 5", "focus", "NaN"]);
-    refused(still, &keys(&[key(5, "focus = [0, 0]")]), &["three numbers", "line"]);
+    refused(
+        still,
+        &keys(&[key(5, "up = [0, 0, 0]")]),
+        &["frame 5", "up", "zero"],
+    );
+    refused(
+        still,
+        &keys(&[key(5, "focus = [0, nan, 0]")]),
+        &["frame 5", "focus", "NaN"],
+    );
+    refused(
+        still,
+        &keys(&[key(5, "focus = [0, 0]")]),
+        &["three numbers", "line"],
+    );
     refused(
         "",
-        &keys(&[key(5, "position = [9, 9, 9]"), key(9, "position = [0.5, 0.5, 0]")]),
+        &keys(&[
+            key(5, "position = [9, 9, 9]"),
+            key(9, "position = [0.5, 0.5, 0]"),
+        ]),
         &["frame 9", "horizon"],
     );
     refused(
         "",
-        &keys(&[key(5, "position = [9, 0, 9]"), key(9, "position = [-18, 0, -18]")]),
+        &keys(&[
+            key(5, "position = [9, 0, 9]"),
+            key(9, "position = [-18, 0, -18]"),
+        ]),
         &["frames 5 and 9", "position", "opposite"],
     );
     let orbit = |radius, inclination| {
-        format!("frames = 41\ninterpolation = \"linear\"\norbit = {{ radius = {radius}, inclination = {inclination}, azimuth = 0 }}")
+        format!(
+            "frames = 41\ninterpolation = \"linear\"\norbit = {{ radius = {radius}, inclination = {inclination}, azimuth = 0 }}"
+        )
     };
     refused("", &orbit("[40, 0.5]", "30"), &["frame 41", "horizon"]);
     refused("", &orbit("nan", "30"), &["animation.orbit.radius", "NaN"]);
     refused("", &orbit("[1, 2, 3]", "30"), &["[from, to]", "line"]);
     refused("", &orbit("\"far\"", "30"), &["a number", "line"]);
     refused("", &orbit("[41, 1.5]", "90"), &["frame 31", "matter"]);
-    refused("", &orbit("5", "[70, 110]"), &["frame 21", "matter", "radius 5.0"]);
+    refused(
+        "",
+        &orbit("5", "[70, 110]"),
+        &["frame 21", "matter", "radius 5.0"],
+    );
     // Between frames too, but not beside the disk.
-    refused("", &orbit("5", "[70, 111]"), &["frame 20", "through", "5.0"]);
-    assert!(animation("", &orbit("15", "[70, 111]")).unwrap().check(20).is_ok());
+    refused(
+        "",
+        &orbit("5", "[70, 111]"),
+        &["frame 20", "through", "5.0"],
+    );
+    assert!(
+        animation("", &orbit("15", "[70, 111]"))
+            .unwrap()
+            .check(20)
+            .is_ok()
+    );
     refused(
         "",
         &format!("{}\n{}", orbit("9", "30"), key(5, "position = [1, 1, 7]")),

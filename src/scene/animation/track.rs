@@ -119,7 +119,10 @@ mod tests {
     use super::*;
 
     fn keys(values: &[(f64, f64)]) -> Vec<(f64, [f64; 1])> {
-        values.iter().map(|&(time, value)| (time, [value])).collect()
+        values
+            .iter()
+            .map(|&(time, value)| (time, [value]))
+            .collect()
     }
 
     #[test]
@@ -144,7 +147,10 @@ mod tests {
         let times: Vec<f64> = (0..=40_000).map(|i| 1e-3 * f64::from(i)).collect();
         let values: Vec<f64> = times.iter().map(|&time| track.at(time)[0]).collect();
         assert!(values.is_sorted_by(|a, b| a >= b));
-        let slopes: Vec<f64> = values.windows(2).map(|pair| (pair[1] - pair[0]) / 1e-3).collect();
+        let slopes: Vec<f64> = values
+            .windows(2)
+            .map(|pair| (pair[1] - pair[0]) / 1e-3)
+            .collect();
         // The second derivative is below 250 everywhere: 6 times the change over the square of the span, at most.
         for pair in slopes.windows(2) {
             assert!((pair[1] - pair[0]).abs() < 0.25, "{pair:?}");

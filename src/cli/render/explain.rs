@@ -3,8 +3,8 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::StdoutError;
-use super::method::Method;
+use super::super::StdoutError;
+use super::super::method::Method;
 use crate::isoradial::Isoradials;
 use crate::orbit::exact::Exact;
 use crate::render::needs::{Candidate, Needs};
@@ -61,7 +61,7 @@ fn print(
             path.display(),
             metadata.measured_error
         )?;
-        table.bytes()
+        table.bytes().len()
     } else {
         writeln!(
             out,

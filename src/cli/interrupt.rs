@@ -1,0 +1,68 @@
+//! The first Ctrl-C or SIGTERM asks the run to end, the second ends it.
+
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
+
+/// Whether the run has been asked to end.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Interrupt {
+    signal: Arc<AtomicUsize>,
+}
+
+/// A run that ended because it was asked to.
+#[derive(Debug, thiserror::Error)]
+#[error("stopped by {}: {done}", if *signal == SIGINT { "Ctrl-C" } else { "SIGTERM" })]
+pub(super) struct Interrupted {
+    signal: i32,
+    /// What has been done, and how to go on.
+    done: String,
+}
+
+impl Interrupted {
+    /// The exit code that shells give a process which a signal ended.
+    pub(super) fn code(&self) -> u8 {
+        128 + self.signal as u8
+    }
+}
+
+impl Interrupt {
+    /// From here on the first signal is only remembered, and the second ends the process at once: what it was
+    /// writing stays unfinished, under another name.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub(super) fn install() -> io::Result<Self> {
+        let interrupt = Self::default();
+        let again = Arc::new(AtomicBool::new(false));
+        for signal in [SIGINT, SIGTERM] {
+            // In this order: the first signal finds the second's condition unset.
+            flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&again))?;
+            flag::register(signal, Arc::clone(&again))?;
+            flag::register_usize(signal, Arc::clone(&interrupt.signal), signal as usize)?;
+        }
+        Ok(interrupt)
+    }
+
+    /// Whether the run is to end.
+    pub(super) fn is_asked(&self) -> bool {
+        self.signal.load(Ordering::Relaxed) != 0
+    }
+
+    /// The error that a run ends with which was asked to.
+    ///
+    /// # Errors
+    /// [`Interrupted`], where it was.
+    pub(super) fn check(&self, done: impl FnOnce() -> String) -> Result<(), Interrupted> {
+        match self.signal.load(Ordering::Relaxed) {
+            0 => Ok(()),
+            signal => Err(Interrupted {
+                signal: signal as i32,
+                done: done(),
+            }),
+        }
+    }
+}

@@ -1,0 +1,35 @@
+#!/bin/bash
+# A Slurm array job of @FRAMES@ frames of @TITLE@, @CHUNK@ a task, printed by darkness @VERSION@.
+# Make the table once, on a disk that all nodes see, then submit, from the folder that relative paths count from:
+#   darkness table @TABLE_NAME@ -o @TABLE@
+#   sbatch @FILE@
+# Or the table as a job too, and the frames after it:
+#   sbatch --dependency=afterok:"$(sbatch --parsable --array=0 @FILE@ table)" @FILE@
+# Submitted again it renders what is missing. The nodes need `darkness` on their PATH; sbatch hands on its own.
+# At most 8 tasks at once: sbatch --array=0-@LAST_TASK@%8 @FILE@
+#SBATCH --job-name=darkness
+#SBATCH --array=0-@LAST_TASK@
+#SBATCH --output=darkness-%A_%a.log
+#SBATCH --open-mode=append
+#SBATCH --ntasks=1
+#SBATCH --cpus-per-task=2
+#SBATCH --requeue
+#SBATCH --signal=B:TERM@60
+
+SCENE=@SCENE@
+TABLE=@TABLE@
+OUT=@OUT@
+# SLURM_ARRAY_TASK_MAX is the array's last index, not the last frame.
+LAST=@FRAMES@
+CHUNK=@CHUNK@
+
+# `exec`: Slurm's SIGTERM, 60 s before the time limit and on scancel, then reaches darkness, which finishes the frames that it
+# has begun.
+if [ "${1-}" = table ]; then
+  exec darkness table @TABLE_NAME@ -o "$TABLE"
+fi
+FIRST_OF_TASK=$((1 + SLURM_ARRAY_TASK_ID * CHUNK))
+LAST_OF_TASK=$((FIRST_OF_TASK + CHUNK - 1))
+if [ "$LAST_OF_TASK" -gt "$LAST" ]; then LAST_OF_TASK=$LAST; fi
+exec darkness render "$SCENE" --frames "$FIRST_OF_TASK-$LAST_OF_TASK" --table "$TABLE" --require-table \
+  --threads "${SLURM_CPUS_PER_TASK:-1}" -o "$OUT"

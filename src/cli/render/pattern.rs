@@ -1,0 +1,188 @@
+//! File names with a frame's number in them: `f_####.png`, `f_%04d.png`.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use crate::cli::Misuse;
+
+/// The most digits that a number is filled up to.
+const WIDEST: usize = 20;
+
+/// The files of a sequence: one for each frame.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(in crate::cli) struct Pattern {
+    folder: PathBuf,
+    before: String,
+    width: usize,
+    after: String,
+    /// As it was given.
+    path: PathBuf,
+}
+
+impl Pattern {
+    /// The pattern that a path is, if its file's name has a place for the number: a row of `#`, or printf's `%d` and
+    /// `%04d`. Of several rows of `#` it is the last.
+    ///
+    /// # Errors
+    /// [`Misuse`] for a number in a folder's name, for two, and for one that is too wide.
+    pub(in crate::cli) fn parse(path: &Path) -> Result<Option<Self>, Misuse> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let Some(name) = path.file_name().and_then(|name| name.to_str()) else {
+            return Ok(None);
+        };
+        let place = match (hashes(name), percent(name)) {
+            (Some(_), Some(_)) => {
+                return Err(Misuse::TwoNumbers {
+                    path: path.to_owned(),
+                });
+            }
+            (Some(place), None) | (None, Some(place)) => Some(place),
+            (None, None) => None,
+        };
+        let numbered = |folder: &str| hashes(folder).is_some() || percent(folder).is_some();
+        if place.is_none()
+            && folder
+                .iter()
+                .any(|part| part.to_str().is_some_and(numbered))
+        {
+            return Err(Misuse::NumberInFolder {
+                path: path.to_owned(),
+            });
+        }
+        let Some((start, end, width)) = place else {
+            return Ok(None);
+        };
+        if width > WIDEST {
+            return Err(Misuse::WideNumber {
+                path: path.to_owned(),
+                widest: WIDEST,
+            });
+        }
+        Ok(Some(Self {
+            folder: folder.to_owned(),
+            before: name[..start].to_owned(),
+            width,
+            after: name[end..].to_owned(),
+            path: path.to_owned(),
+        }))
+    }
+
+    /// The folder that the frames are in; empty for the current one.
+    pub(super) fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// A frame's file.
+    pub(super) fn file(&self, number: u32) -> PathBuf {
+        let Self {
+            before,
+            width,
+            after,
+            ..
+        } = self;
+        self.folder.join(format!("{before}{number:0width$}{after}"))
+    }
+
+    /// The frame whose file has this name.
+    pub(super) fn number(&self, name: &[u8]) -> Option<u32> {
+        let name = name.strip_prefix(self.before.as_bytes())?;
+        let digits = name.strip_suffix(self.after.as_bytes())?;
+        let filled = digits.len() == self.width || !digits.starts_with(b"0");
+        if digits.len() < self.width || !filled || !digits.iter().all(u8::is_ascii_digit) {
+            return None;
+        }
+        std::str::from_utf8(digits).ok()?.parse().ok()
+    }
+}
+
+impl fmt::Display for Pattern {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.path.display())
+    }
+}
+
+/// The last row of `#`: where it begins and ends, and how many digits it stands for.
+fn hashes(name: &str) -> Option<(usize, usize, usize)> {
+    let end = name.rfind('#')? + 1;
+    let start = name[..end].trim_end_matches('#').len();
+    Some((start, end, end - start))
+}
+
+/// The first `%d` or `%0Nd`.
+fn percent(name: &str) -> Option<(usize, usize, usize)> {
+    name.match_indices('%').find_map(|(start, _)| {
+        let (width, _) = name[start + 1..].split_once('d')?;
+        let end = start + 1 + width.len() + 1;
+        if width.is_empty() {
+            return Some((start, end, 1));
+        }
+        let digits = width.strip_prefix('0')?;
+        let is_number = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
+        is_number.then(|| (start, end, digits.parse().unwrap_or(usize::MAX)))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pattern(path: &str) -> Pattern {
+        Pattern::parse(Path::new(path)).unwrap().unwrap()
+    }
+
+    #[test]
+    fn names_and_numbers_are_each_others() {
+        for (path, number, file) in [
+            ("out/f_####.png", 7, "out/f_0007.png"),
+            ("f_%04d.png", 7, "f_0007.png"),
+            ("/a b/#.png", 12, "/a b/12.png"),
+            ("%d.png", 12, "12.png"),
+            ("v2#_###.png", 12345, "v2#_12345.png"),
+            ("100%_%03d.png", 5, "100%_005.png"),
+            ("dots...##", 5, "dots...05"),
+            ("é_##_ü.png", 5, "é_05_ü.png"),
+        ] {
+            let pattern = pattern(path);
+            assert_eq!(pattern.file(number), Path::new(file));
+            let name = Path::new(file).file_name().unwrap();
+            assert_eq!(pattern.number(name.as_encoded_bytes()), Some(number));
+        }
+    }
+
+    #[test]
+    fn other_names_have_no_number() {
+        let pattern = pattern("f_###.png");
+        for name in [
+            "f_1.png",
+            "f_01.png",
+            "f_0001.png",
+            "f_abc.png",
+            "f_.png",
+            "g_001.png",
+            "f_001.png~",
+            "f_+12.png",
+            "f_99999999999.png",
+        ] {
+            assert_eq!(pattern.number(name.as_bytes()), None, "{name}");
+        }
+        assert_eq!(pattern.number(b"f_1000.png"), Some(1000));
+    }
+
+    #[test]
+    fn what_is_no_pattern_or_a_wrong_one() {
+        for path in [
+            "f.png", "50%.png", "%4d.png", "%x.png", "..", "/", "%0d.png", "%",
+        ] {
+            assert_eq!(Pattern::parse(Path::new(path)).unwrap(), None, "{path}");
+        }
+        for path in [
+            "#/f.png",
+            "%04d/f.png",
+            "#_%d.png",
+            "%0999999999999999999999999d.png",
+            "%021d.png",
+        ] {
+            assert!(Pattern::parse(Path::new(path)).is_err(), "{path}");
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! Frames as PNG files, one each: what is finished stays, what is missing or of something else is drawn.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::Path;
+
+use super::pattern::Pattern;
+use crate::output::{Unfinished, leftover, remove_if_dead};
+use crate::render::png::Origin;
+use crate::scene::animation::FrameRange;
+
+/// Whether a frame's file is there, whole, and of the same origin.
+pub(super) fn is_finished(path: &Path, origin: &Origin) -> bool {
+    fs::read(path).is_ok_and(|file| origin.made(&file))
+}
+
+/// Writes a frame's file, whole or not at all.
+///
+/// # Errors
+/// What the system says.
+pub(super) fn write(path: &Path, png: &[u8]) -> io::Result<()> {
+    let mut unfinished = Unfinished::new(path)?;
+    unfinished.file().write_all(png)?;
+    unfinished.finish()
+}
+
+/// Looks through the folder once: removes what killed processes left of these frames, and counts the frames that have a file.
+pub(super) fn look_through(pattern: &Pattern, frames: &FrameRange) -> u64 {
+    let folder = match pattern.folder() {
+        folder if folder.as_os_str().is_empty() => Path::new("."),
+        folder => folder,
+    };
+    let Ok(entries) = fs::read_dir(folder) else {
+        return 0;
+    };
+    let asked = |name: &[u8]| {
+        let number = pattern.number(name);
+        number.is_some_and(|number| frames.contains(number))
+    };
+    let mut present = 0;
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        if asked(name.as_encoded_bytes()) {
+            present += 1;
+        } else if leftover(&name).is_some_and(asked) {
+            remove_if_dead(&entry.path());
+        }
+    }
+    present
+}

@@ -1,0 +1,128 @@
+//! The frames of an [`Animation`](crate::scene::Animation): many of them side by side, with curves shared where the camera's radius stays.
+//!
+//! A frame's bytes depend on the animation, the table and the frame's number alone: not on which other frames are drawn,
+//! nor on where.
+
+mod curved;
+mod ray_by_ray;
+mod spans;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use super::RenderError;
+use super::tiles::Threads;
+use crate::isoradial::EdgeError;
+use crate::scene::SceneError;
+pub use curved::Curved;
+pub use ray_by_ray::RayByRay;
+
+/// As many frames as there are threads, times this, are drawn side by side, each on one thread; fewer one after the
+/// other, each on all threads. The last frames of a few would leave threads without work.
+const SIDE_BY_SIDE: u64 = 4;
+
+/// What draws any frame of an animation.
+pub trait Frames: Sync {
+    /// Draws frame `number` into `pixels`, row by row from the top, on this thread alone or on all of the current rayon
+    /// pool.
+    ///
+    /// # Errors
+    /// [`FrameError`]
+    fn draw(
+        &self,
+        number: u32,
+        on_all_threads: bool,
+        pixels: &mut Vec<u8>,
+    ) -> Result<Effort, FrameError>;
+}
+
+/// What a frame took, and how right it is.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Effort {
+    /// The time for curves that no frame before had.
+    pub curves: Duration,
+    /// The time for the pixels.
+    pub pixels: Duration,
+    /// What an edge may be off by.
+    pub error: EdgeError,
+    /// Whether each pixel's ray was followed by itself, the curves being less right than the angles.
+    pub ray_by_ray: bool,
+}
+
+/// Why a frame could not be drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum FrameError {
+    /// The scene has no such frame.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The frame itself.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+}
+
+/// A frame that was drawn, or could not be.
+#[derive(Debug)]
+pub struct Drawn<'a> {
+    /// Its number in the animation.
+    pub number: u32,
+    /// How many frames were begun before it.
+    pub place: u64,
+    /// Its pixels, row by row from the top.
+    pub pixels: Result<(&'a [u8], Effort), FrameError>,
+}
+
+/// Draws `count` frames on all threads of the current rayon pool. They are begun in order; each is handed to `done` when it
+/// is finished, in any order and from several threads at once. Those that are not `wanted` are passed over.
+///
+/// The memory is that of a frame for each thread.
+///
+/// # Errors
+/// What `done` returns; no more frames are begun then.
+pub fn draw<E: Send>(
+    frames: &impl Frames,
+    (numbers, count): (impl Iterator<Item = u32> + Send, u64),
+    wanted: impl Fn(u32) -> bool + Sync,
+    done: impl Fn(Drawn<'_>) -> Result<(), E> + Sync,
+) -> Result<(), E> {
+    let side_by_side = count >= SIDE_BY_SIDE * rayon::current_num_threads() as u64;
+    let numbers = Mutex::new(numbers.zip(0..));
+    let failed = AtomicBool::new(false);
+    let worker = || {
+        let mut pixels = Vec::new();
+        while !failed.load(Ordering::Relaxed) {
+            let Some((number, place)) = locked(&numbers).next() else {
+                break;
+            };
+            if !wanted(number) {
+                continue;
+            }
+            let effort = frames.draw(number, !side_by_side, &mut pixels);
+            let drawn = Drawn {
+                number,
+                place,
+                pixels: effort.map(|effort| (pixels.as_slice(), effort)),
+            };
+            if let Err(error) = done(drawn) {
+                failed.store(true, Ordering::Relaxed);
+                return Err(error);
+            }
+        }
+        Ok(())
+    };
+    if side_by_side {
+        // One loop for each thread, on that thread: none is ever run from within another's wait.
+        rayon::broadcast(|_| worker()).into_iter().collect()
+    } else {
+        worker()
+    }
+}
+
+fn threads(all: bool) -> Threads {
+    if all { Threads::All } else { Threads::This }
+}
+
+/// What is behind a lock, whole at every moment here.
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

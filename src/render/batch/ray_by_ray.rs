@@ -1,0 +1,39 @@
+//! Frames of which each pixel's ray is followed by itself.
+
+use std::time::Instant;
+
+use super::{Effort, FrameError, Frames};
+use crate::orbit::Orbits;
+use crate::render::pixelwise;
+use crate::scene::{Animation, View};
+
+/// Frames whose pixels are what their centres' rays meet, by some method.
+pub struct RayByRay<'a, O> {
+    animation: &'a Animation,
+    orbits: &'a O,
+    row_done: &'a (dyn Fn() + Sync),
+}
+
+impl<'a, O: Orbits> RayByRay<'a, O> {
+    /// The frames of `animation`. `row_done` is called after each row of each.
+    pub fn new(animation: &'a Animation, orbits: &'a O, row_done: &'a (dyn Fn() + Sync)) -> Self {
+        Self {
+            animation,
+            orbits,
+            row_done,
+        }
+    }
+}
+
+impl<O: Orbits> Frames for RayByRay<'_, O> {
+    fn draw(&self, number: u32, _: bool, pixels: &mut Vec<u8>) -> Result<Effort, FrameError> {
+        let start = Instant::now();
+        let scene = self.animation.frame(number)?;
+        let view = View::new(&scene);
+        *pixels = pixelwise::render(&scene, &view, self.orbits, self.row_done)?;
+        Ok(Effort {
+            pixels: start.elapsed(),
+            ..Effort::default()
+        })
+    }
+}

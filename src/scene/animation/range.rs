@@ -1,0 +1,252 @@
+//! Which frames: `12`, `1-240`, every tenth of them as `1-240x10` or `1-240:10`, several of these with commas.
+
+use core::fmt;
+use core::str::FromStr;
+
+/// A set of frame numbers, written as `N`, `A-B`, `A-BxS` or `A-B:S` (from A to B in steps of S), with commas between
+/// several.
+///
+/// ```
+/// use darkness::scene::animation::FrameRange;
+///
+/// let frames: FrameRange = "1-9x4, 3, 4-6".parse()?;
+/// assert_eq!(frames.iter().collect::<Vec<_>>(), [1, 3, 4, 5, 6, 9]);
+/// # Ok::<(), darkness::scene::animation::FrameRangeError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FrameRange {
+    steps: Vec<Steps>,
+}
+
+/// From the first, by so many, to no more than the last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Steps {
+    first: u32,
+    last: u32,
+    step: u32,
+}
+
+/// Why a text is no range of frames.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum FrameRangeError {
+    /// It is written in another way.
+    #[error(
+        "`{part}` is no range of frames: write 12, 1-240, every tenth as 1-240x10 or 1-240:10, several with commas"
+    )]
+    Form {
+        /// The part that is not understood.
+        part: String,
+    },
+    /// It ends before it begins.
+    #[error(
+        "`{part}` ends before it begins: the smaller number comes first, and frames are drawn in rising order"
+    )]
+    Backwards {
+        /// The part.
+        part: String,
+    },
+    /// There is no frame 0, and no step of 0.
+    #[error("`{part}` has a zero: frames are numbered from 1, and a step is at least 1")]
+    Zero {
+        /// The part.
+        part: String,
+    },
+}
+
+impl FromStr for FrameRange {
+    type Err = FrameRangeError;
+
+    fn from_str(text: &str) -> Result<Self, FrameRangeError> {
+        let steps = text.split(',').map(|part| Steps::parse(part.trim()));
+        Ok(Self {
+            steps: steps.collect::<Result<_, _>>()?,
+        })
+    }
+}
+
+impl Steps {
+    fn parse(part: &str) -> Result<Self, FrameRangeError> {
+        let owned = || part.to_owned();
+        // Digits alone: a sign is none of a number here.
+        let number = |text: &str| {
+            let is_digits = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+            is_digits.then(|| text.parse::<u32>().ok()).flatten()
+        };
+        let read = || {
+            let (range, step) = match part.split_once(['x', 'X', ':']) {
+                Some((range, step)) => (range, Some(number(step.trim())?)),
+                None => (part, None),
+            };
+            match range.split_once('-') {
+                Some((first, last)) => {
+                    let (first, last) = (number(first.trim())?, number(last.trim())?);
+                    Some((first, last, step.unwrap_or(1)))
+                }
+                None if step.is_none() => number(range.trim()).map(|only| (only, only, 1)),
+                None => None,
+            }
+        };
+        let (first, last, step) = read().ok_or_else(|| FrameRangeError::Form { part: owned() })?;
+        if first == 0 || last == 0 || step == 0 {
+            return Err(FrameRangeError::Zero { part: owned() });
+        }
+        if last < first {
+            return Err(FrameRangeError::Backwards { part: owned() });
+        }
+        let last = last - (last - first) % step;
+        Ok(Self {
+            first,
+            last,
+            step: if first == last { 1 } else { step },
+        })
+    }
+
+    /// The first number above `number`.
+    fn above(&self, number: u32) -> Option<u32> {
+        let next = match number.checked_sub(self.first) {
+            None => self.first,
+            Some(past) => self
+                .first
+                .checked_add((past / self.step + 1).checked_mul(self.step)?)?,
+        };
+        (next <= self.last).then_some(next)
+    }
+
+    fn contains(&self, number: u32) -> bool {
+        (self.first..=self.last).contains(&number)
+            && (number - self.first).is_multiple_of(self.step)
+    }
+}
+
+impl FrameRange {
+    /// The frames 1 to `last`.
+    pub fn up_to(last: u32) -> Self {
+        Self {
+            steps: vec![Steps {
+                first: 1,
+                last,
+                step: 1,
+            }],
+        }
+    }
+
+    /// The numbers, rising, each once.
+    pub fn iter(&self) -> impl Iterator<Item = u32> + Send + '_ {
+        let above = |number| {
+            self.steps
+                .iter()
+                .filter_map(|steps| steps.above(number))
+                .min()
+        };
+        core::iter::successors(above(0), move |&number| above(number))
+    }
+
+    /// Whether a number is one of these.
+    pub fn contains(&self, number: u32) -> bool {
+        self.steps.iter().any(|steps| steps.contains(number))
+    }
+
+    /// The greatest number.
+    pub fn last(&self) -> u32 {
+        self.steps.iter().map(|steps| steps.last).max().unwrap_or(0)
+    }
+
+    /// How many numbers there are.
+    pub fn count(&self) -> u64 {
+        match self.steps.as_slice() {
+            [Steps { first, last, step }] => u64::from((last - first) / step) + 1,
+            _ => self.iter().count() as u64,
+        }
+    }
+}
+
+impl fmt::Display for FrameRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (place, Steps { first, last, step }) in self.steps.iter().enumerate() {
+            if place > 0 {
+                write!(f, ",")?;
+            }
+            match (first == last, step) {
+                (true, _) => write!(f, "{first}")?,
+                (false, 1) => write!(f, "{first}-{last}")?,
+                (false, _) => write!(f, "{first}-{last}x{step}")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(text: &str) -> Vec<u32> {
+        let range: FrameRange = text.parse().unwrap();
+        let numbers: Vec<u32> = range.iter().collect();
+        assert_eq!(range.count(), numbers.len() as u64, "{text}");
+        assert_eq!(range.last(), *numbers.last().unwrap(), "{text}");
+        assert!(numbers.iter().all(|&number| range.contains(number)));
+        assert_eq!(range.to_string().parse::<FrameRange>().unwrap(), range);
+        numbers
+    }
+
+    #[test]
+    fn all_ways_to_write_a_range() {
+        assert_eq!(numbers("7"), [7]);
+        assert_eq!(numbers("3-6"), [3, 4, 5, 6]);
+        assert_eq!(numbers("1-10x4"), [1, 5, 9]);
+        assert_eq!(numbers("1-10:4"), [1, 5, 9]);
+        assert_eq!(numbers(" 1 - 10 X 4 , 2"), [1, 2, 5, 9]);
+        assert_eq!(numbers("5-5x7"), [5]);
+        assert_eq!(numbers("8-9,1-3,2-4,3"), [1, 2, 3, 4, 8, 9]);
+        assert_eq!(numbers("1-9x2,1-9x3"), [1, 3, 4, 5, 7, 9]);
+        assert!(!"1-9x2".parse::<FrameRange>().unwrap().contains(4));
+    }
+
+    #[test]
+    fn the_ends_of_the_numbers() {
+        assert_eq!(numbers("4294967294-4294967295"), [u32::MAX - 1, u32::MAX]);
+        assert_eq!(numbers("1-4294967295x4294967294"), [1, u32::MAX]);
+        let all: FrameRange = "1-4294967295".parse().unwrap();
+        assert_eq!(all.count(), u64::from(u32::MAX));
+        assert_eq!(all.iter().nth(1000), Some(1001));
+        assert_eq!(FrameRange::up_to(3).iter().collect::<Vec<_>>(), [1, 2, 3]);
+    }
+
+    #[test]
+    fn what_is_no_range_is_refused_with_the_part_that_is_wrong() {
+        for text in [
+            "",
+            ",",
+            "1,",
+            "a",
+            "1-",
+            "-1",
+            "1--2",
+            "1-2-3",
+            "1x2",
+            "1-9x",
+            "1-9x2x3",
+            "+1",
+            "1.5",
+            "4294967296",
+            "1-9:-1",
+            "١",
+        ] {
+            let error = text.parse::<FrameRange>().unwrap_err();
+            assert!(
+                matches!(error, FrameRangeError::Form { .. }),
+                "{text}: {error}"
+            );
+        }
+        for text in ["0", "0-3", "1-3x0", "0-0"] {
+            let error = text.parse::<FrameRange>().unwrap_err();
+            assert!(
+                matches!(error, FrameRangeError::Zero { .. }),
+                "{text}: {error}"
+            );
+        }
+        let error = "1-3,5-1".parse::<FrameRange>().unwrap_err();
+        assert!(error.to_string().starts_with("`5-1` ends before it begins"));
+    }
+}
