@@ -15,9 +15,9 @@ pub(super) struct Interrupt {
 
 /// A run that ended because it was asked to.
 #[derive(Debug, thiserror::Error)]
-#[error("stopped by {}: {done}", if *signal == SIGINT { "Ctrl-C" } else { "SIGTERM" })]
+#[error("stopped by {}: {done}", if *signal == SIGINT as usize { "Ctrl-C" } else { "SIGTERM" })]
 pub(super) struct Interrupted {
-    signal: i32,
+    signal: usize,
     /// What has been done, and how to go on.
     done: String,
 }
@@ -60,7 +60,7 @@ impl Interrupt {
         match self.signal.load(Ordering::Relaxed) {
             0 => Ok(()),
             signal => Err(Interrupted {
-                signal: signal as i32,
+                signal,
                 done: done(),
             }),
         }

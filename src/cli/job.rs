@@ -42,7 +42,7 @@ enum Scheduler {
     Slurm,
 }
 
-/// The tasks of an array that Slurm allows where nobody has raised MaxArraySize.
+/// The tasks of an array that Slurm allows where nobody has raised its `MaxArraySize`.
 const SLURM_TASKS: u32 = 1001;
 
 /// The most frames that are looked at before the job is printed; each task looks at its own.

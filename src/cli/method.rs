@@ -237,9 +237,14 @@ impl Method {
 
 /// The SHA-256 of some bytes, as hexadecimal digits.
 pub(super) fn hex(bytes: &[u8]) -> String {
+    use std::fmt::Write;
+
     use sha2::Digest;
     let digest = sha2::Sha256::digest(bytes);
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+    digest.iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
 }
 
 impl fmt::Display for Method {

@@ -135,7 +135,8 @@ impl FrameProgress {
             5
         };
         let is_time = now - shown.told >= Duration::from_secs(every);
-        if !is_time && !(is_last && self.kind == ProgressKind::Openjd) {
+        let is_told = is_time || (is_last && self.kind == ProgressKind::Openjd);
+        if !is_told {
             return;
         }
         shown.told = now;

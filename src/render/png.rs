@@ -117,18 +117,18 @@ fn packed(pixels: &[u8], width: usize) -> Vec<u8> {
     let mut bits = Vec::with_capacity(pixels.len().div_ceil(8));
     for row in pixels.chunks(width.max(1)) {
         let (eights, rest) = row.as_chunks::<8>();
-        bits.extend(eights.iter().map(byte));
+        bits.extend(eights.iter().copied().map(byte));
         if !rest.is_empty() {
             let mut last = [0; 8];
             last[..rest.len()].copy_from_slice(rest);
-            bits.push(byte(&last));
+            bits.push(byte(last));
         }
     }
     bits
 }
 
 /// The highest bits of eight pixels.
-fn byte(pixels: &[u8; 8]) -> u8 {
+fn byte(pixels: [u8; 8]) -> u8 {
     let bits = pixels
         .iter()
         .fold(0, |bits, pixel| bits << 1 | u32::from(pixel >> 7));

@@ -42,6 +42,10 @@ use crate::scene::{Animation, DEFAULT_SCENE, Scene, View};
 /// Frames that are there already, whole and of the same scene, table and version, are left as they are: the same command
 /// goes on after whatever stopped it. The first Ctrl-C or SIGTERM finishes the frames begun, the second ends at once.
 #[derive(Debug, Args)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a switch of the command line"
+)]
 pub(super) struct RenderArgs {
     /// A scene's TOML file, or the name of a built-in scene (`darkness scene` lists them)
     #[arg(value_name = "SCENE", default_value = DEFAULT_SCENE)]
@@ -457,7 +461,7 @@ impl Run<'_> {
         let done = |drawn: Drawn<'_>| {
             let number = drawn.number;
             if let Err(error) = self.write_frame(drawn, pattern) {
-                self.tally.failed(number, error);
+                self.tally.failed(number, &error);
                 self.progress.passed_over();
             }
             Ok::<(), std::convert::Infallible>(())

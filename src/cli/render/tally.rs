@@ -72,7 +72,7 @@ impl Tally {
     }
 
     /// A frame could not be drawn or written.
-    pub(super) fn failed(&self, number: u32, reason: impl ToString) {
+    pub(super) fn failed(&self, number: u32, reason: &impl ToString) {
         let mut rest = self.rest();
         rest.failures
             .entry(reason.to_string())
@@ -152,9 +152,9 @@ mod tests {
         let tally = Tally::default();
         assert_eq!(tally.failures(), None);
         for number in [9, 3, 5, 4] {
-            tally.failed(number, "the disk is full");
+            tally.failed(number, &"the disk is full");
         }
-        tally.failed(7, "no right");
+        tally.failed(7, &"no right");
         assert_eq!(
             tally.failures().unwrap(),
             "5 frames failed, the same command tries them again:\n  7: no right\n  3-5,9: the disk is full"

@@ -22,12 +22,12 @@
 //!
 //! # Keyframes
 //! Each quantity is interpolated between the keyframes that name it, and stays before the first and after the last of
-//! them; one that no keyframe names is the scene's own. A position moves as a radius and a direction ([`direction`]),
+//! them; one that no keyframe names is the scene's own. A position moves as a radius and a direction (`direction.rs`),
 //! so that between two keyframes it never comes closer to the hole than both of them.
 //!
 //! # Smooth and linear
 //! A linear quantity changes by the same amount each frame. A smooth one has a continuous first derivative, is never
-//! beyond the keyframes beside it ([`track`]), and comes from rest and to rest at its first and last keyframe.
+//! beyond the keyframes beside it (`track.rs`), and comes from rest and to rest at its first and last keyframe.
 
 mod direction;
 mod orbit;

@@ -236,6 +236,10 @@ fn what_cannot_be_is_refused_with_its_frame() {
         ]),
         &["frames 5 and 9", "position", "opposite"],
     );
+}
+
+#[test]
+fn orbits_that_cannot_be_are_refused_with_their_frame() {
     let orbit = |radius, inclination| {
         format!(
             "frames = 41\ninterpolation = \"linear\"\norbit = {{ radius = {radius}, inclination = {inclination}, azimuth = 0 }}"
@@ -265,7 +269,10 @@ fn what_cannot_be_is_refused_with_its_frame() {
     );
     refused(
         "",
-        &format!("{}\n{}", orbit("9", "30"), key(5, "position = [1, 1, 7]")),
+        &format!(
+            "{}\n[[animation.keyframe]]\nframe = 5\nposition = [1, 1, 7]\n",
+            orbit("9", "30")
+        ),
         &["orbit", "position"],
     );
     refused(
