@@ -22,6 +22,17 @@ pub(super) struct Interrupted {
     done: String,
 }
 
+/// A file that grows beyond a quota (`ulimit -f`) is an error of the write that does it, and not the end of the process.
+pub(super) fn survive_quotas() {
+    #[cfg(unix)]
+    {
+        // Nobody looks at it: a signal that is handled ends nothing.
+        let seen = Arc::new(AtomicBool::new(false));
+        // Where it cannot be handled the write ends the process as before.
+        let _ = flag::register(signal_hook::consts::SIGXFSZ, seen);
+    }
+}
+
 impl Interrupted {
     /// The exit code that shells give a process which a signal ended.
     pub(super) fn code(&self) -> u8 {

@@ -183,6 +183,7 @@ pub fn run() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
+    interrupt::survive_quotas();
     let report = Report::new(cli.quiet);
     let run = || match cli.verb {
         Verb::Render(args) => render::run(&args, report),
