@@ -55,6 +55,11 @@ fn main() {
         }
         FRAMES as f64
     };
+    let all = RefCell::new(vec![1_u8; FRAMES * PIXELS]);
+    let fill_all = || {
+        std::hint::black_box(&mut *all.borrow_mut()).fill(1);
+        FRAMES as f64
+    };
     let one = ["-o", "-", "--format", "raw", "--threads", "1"];
     compare(
         "bare bytes into /dev/null, one thread, time per frame",
@@ -62,8 +67,12 @@ fn main() {
         15,
         &mut [
             Contender {
-                name: "filling as many bytes",
+                name: "filling one buffer as often",
                 run: Box::new(fill),
+            },
+            Contender {
+                name: "filling all frames' bytes",
+                run: Box::new(fill_all),
             },
             Contender {
                 name: "hard edges",
@@ -76,6 +85,7 @@ fn main() {
         ],
     );
 
+    drop(all);
     let memory = Path::new("/dev/shm");
     let shared = tempfile::tempdir_in(if memory.is_dir() { memory } else { here });
     let Ok(shared) = shared else {

@@ -70,6 +70,12 @@ fn the_same_table_picture_and_angles_whatever_the_threads_and_the_processor() {
             assert!(picture.starts_with(b"\x89PNG"));
         }
     }
+    // Frames whose cameras are found by sines, cosines and arcs.
+    for scene in ["orbit", "approach", "tilt"] {
+        let options = [scene, "--table", "a.table", "--frames", "17-180x41"];
+        let film = same_bytes(here, &[&draw[..], &options, &["--format", "raw"]].concat());
+        assert_eq!(film.len(), 4 * 128 * 72);
+    }
     for method in ["table", "exact", "integrate"] {
         let options = ["--table", "a.table", "--method", method];
         let trace = ["trace", REFERENCE_RAYS];
