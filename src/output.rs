@@ -17,9 +17,9 @@ const ENDING: &str = ".part";
 /// How many letters and digits stand before the ending, so that two processes can write one file.
 const RANDOM: usize = 6;
 
-/// The longest name that an unfinished file carries: with the rest it is still a name that file systems take. Of a longer one it
-/// carries the checksum.
-const LONGEST_NAME: usize = 200;
+/// The longest name that an unfinished file carries, in bytes: with the rest it is still a name that file systems take. Of a longer one
+/// it carries the checksum.
+pub const LONGEST_NAME: usize = 200;
 
 /// Writes a file through `fill`, whole or not at all, and onto the disk; what a killed process left of the same file is
 /// removed. Whatever stops the process or the disk on the way, `path` holds its old content, the new, or nothing.
@@ -62,6 +62,8 @@ impl Unfinished {
     /// # Errors
     /// What creating a file in the same folder returns.
     pub fn new(path: &Path) -> io::Result<Self> {
+        // A link is followed, not replaced.
+        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let mut prefix = OsString::from(".");
         prefix.push(path.file_name().map(label).unwrap_or_default());
         prefix.push(".");
@@ -74,7 +76,7 @@ impl Unfinished {
             builder.permissions(fs::Permissions::from_mode(0o666));
         }
         loop {
-            let temporary = builder.tempfile_in(folder_of(path))?;
+            let temporary = builder.tempfile_in(folder_of(&path)).map_err(bare)?;
             // Between its making and its locking someone may have taken it for a leftover. Where files cannot be locked
             // nobody can.
             let is_taken = matches!(
@@ -82,10 +84,7 @@ impl Unfinished {
                 Err(TryLockError::WouldBlock)
             ) || !temporary.path().exists();
             if !is_taken {
-                return Ok(Self {
-                    temporary,
-                    path: path.to_owned(),
-                });
+                return Ok(Self { temporary, path });
             }
         }
     }
@@ -133,8 +132,11 @@ pub fn leftover(name: &OsStr) -> Option<&[u8]> {
 
 /// Removes an unfinished file, unless somebody is writing it.
 pub fn remove_if_dead(path: &Path) {
+    // To open a pipe is to wait for its other end.
+    let is_file = fs::symlink_metadata(path).is_ok_and(|kind| kind.is_file());
     // The lock is let go when the file is gone: who finds it locked makes another.
-    if let Ok(file) = File::open(path)
+    if is_file
+        && let Ok(file) = File::open(path)
         && file.try_lock().is_ok()
     {
         let _ = fs::remove_file(path);
@@ -147,6 +149,16 @@ pub fn label(name: &OsStr) -> OsString {
         format!("{:08x}", crc32fast::hash(name.as_encoded_bytes())).into()
     } else {
         name.to_owned()
+    }
+}
+
+/// An error without the random name of the file that it came with.
+fn bare(error: io::Error) -> io::Error {
+    let source = error.get_ref().and_then(|error| error.source());
+    let system = source.and_then(|source| source.downcast_ref::<io::Error>());
+    match system.and_then(io::Error::raw_os_error) {
+        Some(code) => io::Error::from_raw_os_error(code),
+        None => error,
     }
 }
 

@@ -219,7 +219,7 @@ fn a_rerun_draws_what_is_missing_damaged_or_of_something_else() {
     };
     drawn(&[]);
     let first = files(&out);
-    assert!(drawn(&[]).contains("0 frames") && drawn(&[]).contains("10 were finished before"));
+    assert!(drawn(&[]).contains("all frames were finished before"));
     fs::remove_file(out.join("f_0003.png")).unwrap();
     let mut damaged = first["f_0005.png"].clone();
     let middle = damaged.len() / 2;
@@ -396,8 +396,8 @@ fn a_film_that_cannot_be_written_is_not_left_half() {
     );
     let huge = fs::read_to_string(here.join("small.toml")).unwrap();
     let huge = huge
-        .replace("frames = 3", "frames = 900000000")
-        .replace("width = 96", "width = 9600");
+        .replace("frames = 3", "frames = 90000000")
+        .replace("width = 96", "width = 96000");
     fs::write(here.join("huge.toml"), huge).unwrap();
     refused(
         here,
@@ -407,13 +407,114 @@ fn a_film_that_cannot_be_written_is_not_left_half() {
             "-o",
             "b.y4m",
             "--frames",
-            "1-900000000x900",
+            "1-90000000x900",
         ],
         1,
         &["are needed", "GB", "are free", "-o", "--frames"],
     );
     let left: Vec<_> = files(here).into_keys().collect();
     assert_eq!(left, ["a.y4m", "huge.toml", "small.toml", "tables"]);
+}
+
+#[test]
+fn nothing_is_written_over_what_is_read_by_whatever_name() {
+    let folder = with_animation(5);
+    let here = folder.path();
+    fs::copy(here.join("small.toml"), here.join("f_0003.png")).unwrap();
+    fs::copy(here.join("tables/draft.table"), here.join("g_2.png")).unwrap();
+    std::os::unix::fs::symlink("g_2.png", here.join("my.table")).unwrap();
+    let before = files(here);
+    refused(
+        here,
+        &["render", "f_0003.png", "-o", "f_####.png"],
+        2,
+        &["scene that is read"],
+    );
+    let args = [
+        "render",
+        "small.toml",
+        "--table",
+        "my.table",
+        "-o",
+        "g_#.png",
+    ];
+    refused(here, &args, 2, &["table that is read"]);
+    let args = [
+        "render",
+        "small.toml",
+        "-o",
+        "tables/draft.table",
+        "--format",
+        "raw",
+    ];
+    refused(here, &args, 2, &["table that is read"]);
+    assert!(files(here) == before);
+    // A link is followed.
+    std::os::unix::fs::symlink("real.y4m", here.join("link.y4m")).unwrap();
+    fs::write(here.join("real.y4m"), "old").unwrap();
+    done(here, &["render", "small.toml", "-o", "link.y4m"]);
+    assert!(
+        fs::symlink_metadata(here.join("link.y4m"))
+            .unwrap()
+            .is_symlink()
+    );
+    assert!(
+        fs::read(here.join("real.y4m"))
+            .unwrap()
+            .starts_with(b"YUV4MPEG2")
+    );
+}
+
+/// Guards against a wait for a pipe's other end, and for the end of what has none.
+#[test]
+fn pipes_and_devices_in_the_place_of_frames_are_failures_of_these_frames() {
+    let folder = with_animation(6);
+    let here = folder.path();
+    fs::create_dir(here.join("out")).unwrap();
+    for name in ["f_0002.png", ".f_0004.png.Ab3xY9.part"] {
+        let made = Command::new("mkfifo")
+            .arg(here.join("out").join(name))
+            .status();
+        assert!(made.unwrap().success());
+    }
+    std::os::unix::fs::symlink("/dev/zero", here.join("out/f_0003.png")).unwrap();
+    let (output, stderr) = run(here, &["render", "small.toml", "-o", PATTERN]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        stderr.contains("2-3: out/f_####.png") && stderr.contains("no regular file"),
+        "{stderr}"
+    );
+    done(here, &["render", "small.toml", "-o", PATTERN, "--dry-run"]);
+}
+
+#[test]
+fn a_frame_that_cannot_be_is_no_other_frames_matter() {
+    let folder = with_animation(101);
+    let here = folder.path();
+    // The camera comes to its focus at frame 51, the middle one.
+    let toml = fs::read_to_string(here.join("small.toml")).unwrap();
+    let key = |frame: u32, focus: &str| {
+        format!("[[animation.keyframe]]\nframe = {frame}\nfocus = {focus}\n")
+    };
+    let toml = toml
+        .replace("[0.0, 360.0]", "0.0")
+        .replace("inclination = 80.0", "inclination = 90.0");
+    let keys = [
+        key(50, "[0, 0, 0]"),
+        key(51, "[30, 0, 0]"),
+        key(52, "[0, 0, 0]"),
+    ];
+    fs::write(here.join("bad.toml"), format!("{toml}\n{}", keys.concat())).unwrap();
+    done(
+        here,
+        &["render", "bad.toml", "-o", PATTERN, "--frames", "1-2,101"],
+    );
+    refused(
+        here,
+        &["render", "bad.toml", "-o", PATTERN],
+        1,
+        &["frame 51", "camera.focus"],
+    );
 }
 
 /// Guards against a quota that ends the process: the signal of a file that grows too large.

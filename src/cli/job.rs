@@ -74,6 +74,13 @@ pub(super) fn run(args: &JobArgs, report: Report) -> anyhow::Result<()> {
     let name = name.to_string_lossy();
     let default = || Path::new("frames").join(format!("{name}_####.png"));
     let output = args.output.clone().unwrap_or_else(default);
+    let is_png = output
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
+    if !is_png {
+        let (path, endings) = (output, ".png");
+        return Err(Misuse::Ending { path, endings }.into());
+    }
     if Pattern::parse(&output)?.is_none() {
         let (path, count) = (output, u64::from(frames));
         return Err(Misuse::FramesWithoutNumber { path, count }.into());
@@ -134,9 +141,9 @@ pub(super) fn run(args: &JobArgs, report: Report) -> anyhow::Result<()> {
 
 /// A path as text: the job is one.
 fn text(path: &Path) -> Result<String, Misuse> {
-    let text = path
-        .to_str()
-        .filter(|text| !text.contains(char::is_control));
+    // YAML takes some more for ends of lines, and one for a mark of its own.
+    let is_odd = |c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}' | '\u{feff}');
+    let text = path.to_str().filter(|text| !text.contains(is_odd));
     text.map(str::to_owned)
         .ok_or_else(|| Misuse::UnprintablePath {
             path: path.to_owned(),

@@ -93,6 +93,10 @@ enum Misuse {
     FramesToStdout,
     #[error("{}: a film is one file, and this is a pattern for many; leave out the number, or --format", path.display())]
     FilmWithNumber { path: PathBuf },
+    #[error("{}: numbered names must be text in UTF-8", path.display())]
+    NumberedNotText { path: PathBuf },
+    #[error("{}: the names of numbered files have {longest} bytes at most", path.display())]
+    LongName { path: PathBuf, longest: usize },
     #[error("{}: the frame's number has two places in the name; leave one", path.display())]
     TwoNumbers { path: PathBuf },
     #[error("{}: the frame's number belongs in the file's name, not in a folder's", path.display())]

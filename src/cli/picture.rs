@@ -1,6 +1,7 @@
 //! Where a picture goes.
 
 use std::fmt;
+use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -49,21 +50,6 @@ impl Destination {
         Ok(Self::File(path))
     }
 
-    /// Checks that the picture does not go over `table`.
-    ///
-    /// # Errors
-    /// [`Misuse::OntoInput`]
-    pub(super) fn spares(&self, table: &Path) -> Result<(), Misuse> {
-        match self {
-            Self::File(path) if target::same_file(path, table) => Err(Misuse::OntoInput {
-                option: target::OUTPUT,
-                path: path.clone(),
-                what: "table",
-            }),
-            _ => Ok(()),
-        }
-    }
-
     /// Writes a picture's bytes: a file whole or not at all.
     ///
     /// # Errors
@@ -74,15 +60,26 @@ impl Destination {
                 anyhow::anyhow!("{}: the picture cannot be written: {error}", path.display())
             }),
             Self::Stdout => {
-                let mut stdout = io::stdout().lock();
-                stdout
-                    .write_all(bytes)
-                    .and_then(|()| stdout.flush())
+                stdout()
+                    .and_then(|mut stdout| stdout.write_all(bytes))
                     .map_err(StdoutError)?;
                 Ok(())
             }
         }
     }
+}
+
+/// The standard output without the buffer that looks for line ends in it, and that takes it for a success where there is
+/// none.
+///
+/// # Errors
+/// What the system says.
+pub(super) fn stdout() -> io::Result<File> {
+    #[cfg(unix)]
+    let owned = std::os::fd::AsFd::as_fd(&io::stdout()).try_clone_to_owned()?;
+    #[cfg(windows)]
+    let owned = std::os::windows::io::AsHandle::as_handle(&io::stdout()).try_clone_to_owned()?;
+    Ok(File::from(owned))
 }
 
 impl fmt::Display for Destination {

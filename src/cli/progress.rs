@@ -128,7 +128,7 @@ impl FrameProgress {
         };
         change(&mut shown);
         let now = Instant::now();
-        let is_last = shown.done > 0 && shown.done == shown.total;
+        let is_last = shown.done == shown.total;
         let every = if self.kind == ProgressKind::Openjd {
             1
         } else {

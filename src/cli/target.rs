@@ -66,11 +66,24 @@ pub(super) fn check(path: &Path, option: &'static str) -> Result<(), TargetError
 /// # Errors
 /// [`TargetError`]: why it cannot.
 pub(super) fn check_with_parents(path: &Path) -> Result<(), TargetError> {
-    let existing = folder_of(path)
-        .ancestors()
-        .map(or_current)
-        .find(|folder| folder.exists());
-    check_within(path, existing.unwrap_or(Path::new(".")), OUTPUT)
+    check_within(path, existing(folder_of(path)), OUTPUT)
+}
+
+/// The folder, or the nearest above it that is there.
+fn existing(folder: &Path) -> &Path {
+    let mut folders = folder.ancestors().map(or_current);
+    folders
+        .find(|folder| folder.exists())
+        .unwrap_or(Path::new("."))
+}
+
+/// Checks that files can be written to a folder, which is made where it is missing.
+///
+/// # Errors
+/// [`TargetError`]: why they cannot.
+pub(super) fn check_folder(folder: &Path) -> Result<(), TargetError> {
+    let folder = or_current(folder);
+    check_writable(folder, existing(folder), OUTPUT)
 }
 
 /// The folder that holds `path`.
@@ -88,13 +101,18 @@ fn or_current(folder: &Path) -> &Path {
 }
 
 fn check_within(path: &Path, folder: &Path, option: &'static str) -> Result<(), TargetError> {
-    let (to, place) = (path.to_owned(), folder.to_owned());
+    let to = || path.to_owned();
     match fs::metadata(path) {
-        Ok(kind) if kind.is_dir() => return Err(TargetError::IsAFolder { path: to, option }),
+        Ok(kind) if kind.is_dir() => Err(TargetError::IsAFolder { path: to(), option }),
         // Files are replaced by renaming: a device or a pipe of that name would be gone.
-        Ok(kind) if !kind.is_file() => return Err(TargetError::Special { path: to, option }),
-        _ => {}
+        Ok(kind) if !kind.is_file() => Err(TargetError::Special { path: to(), option }),
+        _ => check_writable(path, folder, option),
     }
+}
+
+/// Checks that files can be made in a folder; `path` is what is to be there.
+fn check_writable(path: &Path, folder: &Path, option: &'static str) -> Result<(), TargetError> {
+    let (to, place) = (path.to_owned(), folder.to_owned());
     let unwritable = |source| TargetError::Unwritable {
         path: to.clone(),
         folder: place.clone(),

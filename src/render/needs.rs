@@ -59,19 +59,27 @@ impl Needs {
     /// table serves all its frames.
     ///
     /// # Errors
-    /// A frame that cannot be.
+    /// Where none of them can be.
     pub fn of_animation(animation: &Animation) -> Result<Self, SceneError> {
         const LOOKED_AT: u64 = 9;
         let last = u64::from(animation.frames());
         let mut most: Option<Self> = None;
         let mut before = 0;
+        let mut refused = None;
         for place in 0..LOOKED_AT {
             let number = (1 + (last - 1) * place / (LOOKED_AT - 1)) as u32;
             if number == before {
                 continue;
             }
             before = number;
-            let scene = animation.frame(number)?;
+            // One that cannot be is not this one's to tell.
+            let scene = match animation.frame(number) {
+                Ok(scene) => scene,
+                Err(error) => {
+                    refused.get_or_insert(error);
+                    continue;
+                }
+            };
             let needs = Self::new(&scene, &View::new(&scene));
             if most
                 .as_ref()
@@ -80,10 +88,11 @@ impl Needs {
                 most = Some(needs);
             }
         }
-        most.ok_or(SceneError::NoFrame {
+        let none = SceneError::NoFrame {
             number: 1,
             frames: animation.frames(),
-        })
+        };
+        most.ok_or(refused.unwrap_or(none))
     }
 
     /// The smallest table that is enough; none where only exact angles are.

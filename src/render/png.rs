@@ -40,6 +40,7 @@ impl Origin {
     pub fn made(&self, file: &[u8]) -> bool {
         let mut texts = self.texts().into_iter().peekable();
         let mut rest = file.strip_prefix(&SIGNATURE).unwrap_or_default();
+        let mut has_pixels = false;
         while let Some((kind, data, after)) = chunk(rest) {
             rest = after;
             match kind {
@@ -53,7 +54,8 @@ impl Origin {
                         return false;
                     }
                 }
-                b"IEND" => return texts.peek().is_none() && rest.is_empty(),
+                b"IDAT" => has_pixels = true,
+                b"IEND" => return has_pixels && texts.peek().is_none() && rest.is_empty(),
                 _ => {}
             }
         }

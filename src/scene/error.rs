@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use super::animation::MAX_FRAMES;
 use super::builtin::builtins;
 use super::validate::{
-    FARTHEST_CAMERA, ISCO_RADIUS, MAX_IMAGE_SIDE, MAX_PIXELS, MAX_TOLERANCE, WIDEST_DISK,
+    FARTHEST_CAMERA, ISCO_RADIUS, MAX_IMAGE_SIDE, MAX_PIXELS, MAX_TOLERANCE, NARROWEST_FOV,
+    WIDEST_DISK,
 };
 
 /// Why a scene is refused: what is wrong, what is allowed, and why.
@@ -175,7 +176,7 @@ pub enum SceneError {
     UpAlongView,
     /// The field of view is no angle that a flat picture can have.
     #[error(
-        "camera.fov = {fov:?} is not allowed: a flat picture's vertical field of view is above 0 and below 180 degrees"
+        "camera.fov = {fov:?} is not allowed: a flat picture's vertical field of view is above 0 ({NARROWEST_FOV:e} at least) and below 180 degrees"
     )]
     Fov {
         /// The field of view, in degrees.

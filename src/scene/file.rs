@@ -215,9 +215,21 @@ impl SceneFile {
     /// [`SceneError::Toml`], with line and column.
     pub(super) fn parse(text: &str) -> Result<Self, SceneError> {
         toml::from_str(text).map_err(|error| SceneError::Toml {
-            message: error.to_string().trim_end().to_owned(),
+            message: shortened(error.to_string().trim_end()),
         })
     }
+}
+
+/// A message without the rest of very long lines, which it quotes.
+fn shortened(message: &str) -> String {
+    const LONGEST: usize = 200;
+    let lines = message
+        .lines()
+        .map(|line| match line.char_indices().nth(LONGEST) {
+            Some((end, _)) => format!("{} …", &line[..end]),
+            None => line.to_owned(),
+        });
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 impl From<&Scene> for SceneFile {

@@ -46,7 +46,7 @@ pub use camera::{Affine, PixelRay, View};
 pub use error::SceneError;
 pub use validate::{
     FARTHEST_CAMERA, HORIZON_RADIUS, ISCO_RADIUS, MAX_IMAGE_SIDE, MAX_PIXELS, MAX_TOLERANCE,
-    WIDEST_DISK,
+    NARROWEST_FOV, WIDEST_DISK,
 };
 
 /// The name of the scene rendered where none is asked for.

@@ -16,6 +16,10 @@ pub const ISCO_RADIUS: f64 = 3.0;
 /// The farthest a camera may stand, in Schwarzschild radii: there two points of double precision are 1/8 apart.
 pub const FARTHEST_CAMERA: f64 = 1e15;
 
+/// The smallest vertical field of view, in degrees: far below what double precision can aim at, and far above where a pixel's
+/// square leaves it.
+pub const NARROWEST_FOV: f64 = 1e-100;
+
 /// The largest outer edge of a disk, in Schwarzschild radii: as far as rays are followed
 /// ([`MIN_U`](crate::orbit::MIN_U)).
 pub const WIDEST_DISK: f64 = 1e100;
@@ -72,6 +76,11 @@ pub(super) fn scene(
     disk: Disk,
     picture: Picture,
 ) -> Result<Scene, SceneError> {
+    // What was finite may not be so any more between two keyframes.
+    finite_vector("camera.position", camera.position.to_array())?;
+    finite_vector("camera.focus", camera.focus.to_array())?;
+    finite_direction("camera.up", camera.up.to_array())?;
+    finite_direction("disk.normal", disk.normal.to_array())?;
     check_camera(&camera, radius)?;
     self::disk(disk.inner, disk.outer)?;
     if cosine(camera.position, disk.normal).abs() <= IN_PLANE
@@ -159,7 +168,7 @@ fn check_camera(camera: &Camera, radius: f64) -> Result<(), SceneError> {
         return Err(SceneError::UpAlongView);
     }
     let fov = finite("camera.fov", camera.fov_degrees)?;
-    if fov > 0.0 && fov < 180.0 {
+    if (NARROWEST_FOV..180.0).contains(&fov) {
         Ok(())
     } else {
         Err(SceneError::Fov { fov })

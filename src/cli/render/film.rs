@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use super::super::StdoutError;
+use super::super::picture::stdout;
 use crate::output::{Unfinished, label, remove_leftovers};
 use crate::scene::ImageSize;
 use crate::scene::animation::Rate;
@@ -187,18 +188,11 @@ fn open(place: &Place) -> io::Result<Sink> {
     }
 }
 
-/// The standard output without the buffer that looks for line ends in it.
-fn stdout() -> io::Result<File> {
-    #[cfg(unix)]
-    let owned = std::os::fd::AsFd::as_fd(&io::stdout()).try_clone_to_owned()?;
-    #[cfg(windows)]
-    let owned = std::os::windows::io::AsHandle::as_handle(&io::stdout()).try_clone_to_owned()?;
-    Ok(File::from(owned))
-}
-
 fn unwritable(place: &Place, error: io::Error) -> anyhow::Error {
     match place {
         Place::Stdout => StdoutError(error).into(),
+        // A reader that has had enough, of a pipe with a name.
+        Place::Device(_) if error.kind() == io::ErrorKind::BrokenPipe => StdoutError(error).into(),
         Place::File(path) | Place::Device(path) => {
             anyhow::anyhow!("{}: the film cannot be written: {error}", path.display())
         }

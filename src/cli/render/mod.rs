@@ -20,7 +20,7 @@ use plan::Plan;
 
 use super::method::{Checked, Method, MethodArgs};
 use super::progress::{ProgressKind, Report};
-use super::{Misuse, Threads, start_threads};
+use super::{Misuse, StdoutError, Threads, start_threads};
 use crate::render::needs::Needs;
 use crate::scene::animation::FrameRange;
 use crate::scene::{Animation, DEFAULT_SCENE, View};
@@ -100,14 +100,17 @@ pub(super) fn run(args: &RenderArgs, report: Report) -> anyhow::Result<()> {
         if args.explain {
             return explain_one(args, &animation, &frames, report);
         }
-        let plan = Plan::new(args, &animation, &frames)?;
+        let (plan, checked) = Plan::new(args, &animation, &frames)?;
         if args.dry_run {
-            return plan.list();
+            return plan.list(checked);
         }
-        plan.run(report)
+        plan.run(checked, report)
     };
     run().inspect_err(|error| {
-        if args.progress == ProgressKind::Openjd {
+        let is_failure = !error
+            .downcast_ref()
+            .is_some_and(StdoutError::is_closed_pipe);
+        if is_failure && args.progress == ProgressKind::Openjd {
             let text = error.to_string().replace('\n', " ");
             let _ = writeln!(io::stderr(), "openjd_fail: {text}");
         }

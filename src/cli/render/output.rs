@@ -67,7 +67,7 @@ impl Output {
         let format = match args.format.unwrap_or(by_ending) {
             FormatName::Y4m => Format::Y4m,
             FormatName::Raw => Format::Raw,
-            FormatName::Png => return Self::pictures(path, &args.scene, animation, count),
+            FormatName::Png => return Self::pictures(path, args, animation, count),
         };
         if to_stdout {
             return Ok(Self::Film(format, Place::Stdout));
@@ -78,14 +78,15 @@ impl Output {
         if fs::metadata(&path).is_ok_and(|kind| !kind.is_file() && !kind.is_dir()) {
             return Ok(Self::Film(format, Place::Device(path)));
         }
-        not_onto(&path, &args.scene, "scene")?;
-        target::check(&path, target::OUTPUT)?;
+        if !args.dry_run {
+            target::check(&path, target::OUTPUT)?;
+        }
         Ok(Self::Film(format, Place::File(path)))
     }
 
     fn pictures(
         path: PathBuf,
-        scene: &Path,
+        args: &RenderArgs,
         animation: &Animation,
         count: u64,
     ) -> anyhow::Result<Self> {
@@ -115,31 +116,51 @@ impl Output {
         };
         match pattern {
             Some(pattern) => {
-                target::check_with_parents(&pattern.file(1))?;
+                if !args.dry_run {
+                    target::check_folder(pattern.folder())?;
+                }
                 Ok(Self::Sequence(pattern))
             }
+            None if count > 1 && path.to_str().is_none() => {
+                Err(Misuse::NumberedNotText { path }.into())
+            }
             None if count > 1 => Err(Misuse::FramesWithoutNumber { path, count }.into()),
-            None => Ok(Self::Picture(Destination::checked(path, ".png", scene)?)),
+            None => Ok(Self::Picture(Destination::checked(
+                path,
+                ".png",
+                &args.scene,
+            )?)),
         }
     }
 
-    /// Checks that nothing goes over `table`.
+    /// Checks that nothing goes over an input, by whatever name it is reached.
     ///
     /// # Errors
     /// [`Misuse::OntoInput`]
-    pub(super) fn spares(&self, table: &Path, frames: &FrameRange) -> Result<(), Misuse> {
+    pub(super) fn spares(
+        &self,
+        input: &Path,
+        what: &'static str,
+        frames: &FrameRange,
+    ) -> Result<(), Misuse> {
         match self {
-            Self::Picture(destination) => destination.spares(table),
-            Self::Film(_, Place::File(path)) => not_onto(path, table, "table"),
-            Self::Film(..) => Ok(()),
+            Self::Picture(Destination::File(path)) | Self::Film(_, Place::File(path)) => {
+                not_onto(path, input, what)
+            }
+            Self::Picture(Destination::Stdout) | Self::Film(..) => Ok(()),
             Self::Sequence(pattern) => {
-                let name = table.file_name().unwrap_or_default();
-                match pattern.number(name.as_encoded_bytes()) {
-                    Some(number) if frames.contains(number) => {
-                        not_onto(&pattern.file(number), table, "table")
+                let led_to = fs::canonicalize(input).unwrap_or_else(|_| input.to_owned());
+                for name in [input, &led_to]
+                    .into_iter()
+                    .filter_map(|path| path.file_name())
+                {
+                    if let Some(number) = pattern.number(name.as_encoded_bytes())
+                        && frames.contains(number)
+                    {
+                        not_onto(&pattern.file(number), input, what)?;
                     }
-                    _ => Ok(()),
                 }
+                Ok(())
             }
         }
     }
@@ -169,7 +190,7 @@ impl fmt::Display for Output {
 }
 
 fn not_onto(path: &Path, input: &Path, what: &'static str) -> Result<(), Misuse> {
-    if target::same_file(path, input) {
+    if target::same_place(path, input) {
         return Err(Misuse::OntoInput {
             option: target::OUTPUT,
             path: path.to_owned(),

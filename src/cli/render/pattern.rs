@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use crate::cli::Misuse;
+use crate::output::LONGEST_NAME;
 
 /// The most digits that a number is filled up to.
 const WIDEST: usize = 20;
@@ -39,6 +40,12 @@ impl Pattern {
             (Some(place), None) | (None, Some(place)) => Some(place),
             (None, None) => None,
         };
+        let second = percent(name).is_some_and(|(_, end, _)| percent(&name[end..]).is_some());
+        if second {
+            return Err(Misuse::TwoNumbers {
+                path: path.to_owned(),
+            });
+        }
         let numbered = |folder: &str| hashes(folder).is_some() || percent(folder).is_some();
         if place.is_none()
             && folder
@@ -56,6 +63,13 @@ impl Pattern {
             return Err(Misuse::WideNumber {
                 path: path.to_owned(),
                 widest: WIDEST,
+            });
+        }
+        // As long as the longest number makes it.
+        if name.len() - (end - start) + width.max(10) > LONGEST_NAME {
+            return Err(Misuse::LongName {
+                path: path.to_owned(),
+                longest: LONGEST_NAME - 10,
             });
         }
         Ok(Some(Self {
@@ -179,6 +193,7 @@ mod tests {
             "#/f.png",
             "%04d/f.png",
             "#_%d.png",
+            "%d%d.png",
             "%0999999999999999999999999d.png",
             "%021d.png",
         ] {

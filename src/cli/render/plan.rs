@@ -2,7 +2,6 @@
 
 use std::fs;
 use std::io::{self, Write};
-use std::mem;
 
 use super::super::method::{Checked, Method, hex};
 use super::super::progress::Report;
@@ -29,11 +28,10 @@ pub(super) struct Plan<'a> {
     pub(super) first: Scene,
     pub(super) output: Output,
     pub(super) needs: Needs,
-    checked: Checked,
 }
 
 impl<'a> Plan<'a> {
-    /// Checks all that can be before anything is drawn.
+    /// Checks all that can be before anything is drawn; the table may be yet to be made.
     ///
     /// # Errors
     /// What stands in the way.
@@ -41,13 +39,14 @@ impl<'a> Plan<'a> {
         args: &'a RenderArgs,
         animation: &'a Animation,
         frames: &'a FrameRange,
-    ) -> anyhow::Result<Self> {
+    ) -> anyhow::Result<(Self, Checked)> {
         let count = frames.count();
         let output = Output::new(args, animation, count)?;
         let needs = Needs::of_animation(animation)?;
         let needed = needs.table().map(|candidate| candidate.name);
+        output.spares(&args.scene, "scene", frames)?;
         if let Some(table) = args.method.table_path(needed) {
-            output.spares(&table, frames)?;
+            output.spares(&table, "table", frames)?;
         }
         let checked = args.method.check(needed)?;
         let first = animation.frame(frames.iter().next().unwrap_or(1))?;
@@ -56,7 +55,7 @@ impl<'a> Plan<'a> {
         {
             target::check_room(path, format.bytes(first.image(), count))?;
         }
-        Ok(Self {
+        let plan = Self {
             args,
             animation,
             frames,
@@ -64,15 +63,14 @@ impl<'a> Plan<'a> {
             first,
             output,
             needs,
-            checked,
-        })
+        };
+        Ok((plan, checked))
     }
 
     /// Prints each frame's number, its file, and whether it would be drawn.
-    pub(super) fn list(self) -> anyhow::Result<()> {
+    pub(super) fn list(&self, checked: Checked) -> anyhow::Result<()> {
         // A table that is yet to be made has made no frame.
-        let origin = self
-            .checked
+        let origin = checked
             .without_making()
             .ok()
             .map(|method| origin_of(self.animation, &method));
@@ -85,7 +83,7 @@ impl<'a> Plan<'a> {
                         frame: number,
                         ..origin.clone()
                     };
-                    sequence::is_finished(&file, &origin)
+                    sequence::is_finished(&file, self.most_bytes(), &origin)
                 };
                 let kept = matches!(self.output, Output::Sequence(_))
                     && !self.args.overwrite
@@ -100,10 +98,8 @@ impl<'a> Plan<'a> {
     }
 
     /// Draws the frames.
-    pub(super) fn run(mut self, report: Report) -> anyhow::Result<()> {
+    pub(super) fn run(&self, checked: Checked, report: Report) -> anyhow::Result<()> {
         start_threads(self.args.threads.threads)?;
-        let placeholder = Checked::Ready(Method::Exact);
-        let checked = mem::replace(&mut self.checked, placeholder);
         let method = ready(self.args, checked, report)?;
         let bar = report.bar(u64::from(self.first.image().height), "drawing", "rows");
         let single = self.count == 1;
@@ -115,20 +111,20 @@ impl<'a> Plan<'a> {
         let animation = self.animation;
         match &method {
             Method::Table(table) => draw(
-                &self,
+                self,
                 &Curved::new(animation, &table.lookup()),
                 &method,
                 report,
             ),
-            Method::NoTable => draw(&self, &Curved::new(animation, &Exact), &method, report),
+            Method::NoTable => draw(self, &Curved::new(animation, &Exact), &method, report),
             Method::Exact => draw(
-                &self,
+                self,
                 &RayByRay::new(animation, &Exact, &row_done),
                 &method,
                 report,
             ),
             Method::Integrate(adaptive) => draw(
-                &self,
+                self,
                 &RayByRay::new(animation, adaptive, &row_done),
                 &method,
                 report,
@@ -153,11 +149,8 @@ impl<'a> Plan<'a> {
         let present = sequence::look_through(pattern, self.frames);
         let missing = self.count.saturating_sub(present);
         if let Room::Known(room) = target::room(folder) {
-            // A frame is never larger than its pixels and a little, and mostly far smaller: what three of them take tells.
-            let size = self.first.image();
-            let most = missing
-                .saturating_mul(u64::from(size.width) * u64::from(size.height) * 17 / 16 + 1024);
-            if most > room {
+            // Mostly they are far smaller: what three of them take tells.
+            if missing.saturating_mul(self.most_bytes()) > room {
                 let bytes = missing.saturating_mul(self.sample(frames, origin)?);
                 target::check_room(&pattern.file(1), bytes)?;
             }
@@ -165,12 +158,19 @@ impl<'a> Plan<'a> {
         Ok(())
     }
 
+    /// The most bytes that a frame's PNG file can have: its pixels as they are, and a little.
+    pub(super) fn most_bytes(&self) -> u64 {
+        let size = self.first.image();
+        u64::from(size.width) * u64::from(size.height) * 17 / 16 + 4096
+    }
+
     /// The most bytes that the first, the middle and the last frame take.
     fn sample(&self, frames: &impl Frames, origin: &Origin) -> anyhow::Result<u64> {
         let (first, last) = (self.frames.iter().next().unwrap_or(1), self.frames.last());
         let mut pixels = Vec::new();
         let mut most = 0;
-        for number in [first, first.midpoint(last), last] {
+        let middle = self.frames.above(first.midpoint(last)).unwrap_or(last);
+        for number in [first, middle, last] {
             frames.draw(number, true, &mut pixels)?;
             most = most.max(self.encode(&pixels, origin)?.len() as u64);
         }

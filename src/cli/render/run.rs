@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use super::super::interrupt::Interrupt;
 use super::super::method::Method;
 use super::super::picture::Destination;
-use super::super::progress::{FrameProgress, ProgressKind, Report, duration};
+use super::super::progress::{FrameProgress, ProgressKind, Report, duration, warn};
 use super::film::{Broken, Film};
 use super::output::Output;
 use super::pattern::Pattern;
@@ -103,7 +103,11 @@ impl Run<'_> {
     fn sequence(&self, frames: &impl Frames, pattern: &Pattern) {
         let wanted = |number| {
             let keep = !self.plan.args.overwrite
-                && sequence::is_finished(&pattern.file(number), &self.origin(number));
+                && sequence::is_finished(
+                    &pattern.file(number),
+                    self.plan.most_bytes(),
+                    &self.origin(number),
+                );
             if keep {
                 self.tally.finished_before();
                 self.progress.passed_over();
@@ -114,7 +118,6 @@ impl Run<'_> {
             let number = drawn.number;
             if let Err(error) = self.write_frame(drawn, pattern) {
                 self.tally.failed(number, &error);
-                self.progress.passed_over();
             }
             Ok::<(), Infallible>(())
         };
@@ -148,8 +151,8 @@ impl Run<'_> {
             Ok::<(), Broken>(())
         };
         let drawn = batch::draw(frames, self.numbers(), |_| true, done);
-        if drawn.is_ok() && self.interrupt.is_asked() {
-            // What is not whole is not kept.
+        if drawn.is_ok() && self.tally.count_drawn() < self.plan.count {
+            // The run was asked to end: what is not whole is not kept.
             return Ok(());
         }
         film.finish()
@@ -178,29 +181,38 @@ impl Run<'_> {
         if plan.args.timings && drawn > 0 {
             plan.tell_timings(&tally, method, elapsed)?;
         }
-        interrupt.check(|| {
-            let kept_for = match plan.output {
-                Output::Sequence(_) => "the same command goes on from there",
-                _ => "nothing of an unfinished file is kept",
+        let failures = tally.failures();
+        let finished = drawn + kept;
+        let stopped = interrupt.check(|| {
+            let rest = match plan.output {
+                _ if finished == plan.count => "",
+                Output::Sequence(_) => "; the same command goes on from there",
+                _ => "; nothing of an unfinished file is kept",
             };
-            let count = plan.count;
-            format!(
-                "{} of {count} frames are finished; {kept_for}",
-                drawn + kept
-            )
-        })?;
-        if let Some(failures) = tally.failures() {
-            anyhow::bail!("{failures}");
+            format!("{finished} of {} frames are finished{rest}", plan.count)
+        });
+        if let Some(failures) = failures {
+            if stopped.is_err() {
+                warn(&failures);
+            } else {
+                anyhow::bail!("{failures}");
+            }
         }
+        stopped?;
         let (output, size) = (&plan.output, plan.first.image());
         let what = format!("{} × {}, {method}", size.width, size.height);
         let time = duration(elapsed);
-        if plan.count == 1 {
-            if kept == 1 {
-                report.note(format_args!("{output}: finished before, left as it is"));
+        if drawn == 0 {
+            let all = if kept == 1 {
+                "the frame was"
             } else {
-                report.note(format_args!("{output}: {what}, drawn in {time}"));
-            }
+                "all frames were"
+            };
+            report.note(format_args!("{output}: {all} finished before"));
+            return Ok(());
+        }
+        if plan.count == 1 {
+            report.note(format_args!("{output}: {what}, drawn in {time}"));
             return Ok(());
         }
         let rate = drawn as f64 / elapsed.as_secs_f64();

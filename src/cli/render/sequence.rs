@@ -9,9 +9,11 @@ use crate::output::{Unfinished, leftover, remove_if_dead};
 use crate::render::png::Origin;
 use crate::scene::animation::FrameRange;
 
-/// Whether a frame's file is there, whole, and of the same origin.
-pub(super) fn is_finished(path: &Path, origin: &Origin) -> bool {
-    fs::read(path).is_ok_and(|file| origin.made(&file))
+/// Whether a frame's file is there, whole, and of the same origin. One of more than `most` bytes is none.
+pub(super) fn is_finished(path: &Path, most: u64, origin: &Origin) -> bool {
+    // To read a pipe is to wait for its other end.
+    let may_be = fs::metadata(path).is_ok_and(|kind| kind.is_file() && kind.len() <= most);
+    may_be && fs::read(path).is_ok_and(|file| origin.made(&file))
 }
 
 /// Writes a frame's file, whole or not at all.
@@ -19,6 +21,10 @@ pub(super) fn is_finished(path: &Path, origin: &Origin) -> bool {
 /// # Errors
 /// What the system says.
 pub(super) fn write(path: &Path, png: &[u8]) -> io::Result<()> {
+    // It would be replaced by a file.
+    if fs::metadata(path).is_ok_and(|kind| !kind.is_file()) {
+        return Err(io::Error::other("it is there and no regular file"));
+    }
     let mut unfinished = Unfinished::new(path)?;
     unfinished.file().write_all(png)?;
     unfinished.finish()

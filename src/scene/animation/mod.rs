@@ -51,7 +51,7 @@ pub use rate::Rate;
 use track::Track;
 
 /// The most frames of an animation.
-pub const MAX_FRAMES: u32 = 1_000_000_000;
+pub const MAX_FRAMES: u32 = 100_000_000;
 
 /// Between keyframes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -26,6 +26,9 @@ struct Steps {
     step: u32,
 }
 
+/// The most parts of a range: each is looked at for every frame.
+const MOST_PARTS: usize = 1000;
+
 /// Why a text is no range of frames.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FrameRangeError {
@@ -36,6 +39,12 @@ pub enum FrameRangeError {
     Form {
         /// The part that is not understood.
         part: String,
+    },
+    /// It has too many parts.
+    #[error("a range of frames has {MOST_PARTS} parts at most, and this one {parts}")]
+    Parts {
+        /// How many it has.
+        parts: usize,
     },
     /// It ends before it begins.
     #[error(
@@ -58,15 +67,28 @@ impl FromStr for FrameRange {
 
     fn from_str(text: &str) -> Result<Self, FrameRangeError> {
         let steps = text.split(',').map(|part| Steps::parse(part.trim()));
-        Ok(Self {
-            steps: steps.collect::<Result<_, _>>()?,
-        })
+        let mut steps: Vec<Steps> = steps.collect::<Result<_, _>>()?;
+        steps.sort_unstable_by_key(|steps| (steps.first, steps.last));
+        // Ranges without steps that touch are one.
+        steps.dedup_by(|next, before| {
+            let touch =
+                next.step == 1 && before.step == 1 && next.first <= before.last.saturating_add(1);
+            if touch {
+                before.last = before.last.max(next.last);
+            }
+            touch || next == before
+        });
+        if steps.len() > MOST_PARTS {
+            return Err(FrameRangeError::Parts { parts: steps.len() });
+        }
+        Ok(Self { steps })
     }
 }
 
 impl Steps {
     fn parse(part: &str) -> Result<Self, FrameRangeError> {
-        let owned = || part.to_owned();
+        // Of a very long one its beginning.
+        let owned = || part.chars().take(40).collect::<String>();
         // Digits alone: a sign is none of a number here.
         let number = |text: &str| {
             let is_digits = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
@@ -132,13 +154,13 @@ impl FrameRange {
 
     /// The numbers, rising, each once.
     pub fn iter(&self) -> impl Iterator<Item = u32> + Send + '_ {
-        let above = |number| {
-            self.steps
-                .iter()
-                .filter_map(|steps| steps.above(number))
-                .min()
-        };
-        core::iter::successors(above(0), move |&number| above(number))
+        core::iter::successors(self.above(0), |&number| self.above(number))
+    }
+
+    /// The first of these above a number.
+    pub fn above(&self, number: u32) -> Option<u32> {
+        let above = self.steps.iter().filter_map(|steps| steps.above(number));
+        above.min()
     }
 
     /// Whether a number is one of these.
