@@ -102,20 +102,7 @@ impl Picture<'_> {
         (patch.sound(self) == 1).then_some(patch)
     }
 
-    /// The same of those rays of a rectangle that meet the plane in one of the quarter turns, 0 or 1; with the curves
-    /// continued a little beyond it. None too where that is no little way, close to the disk's plane.
-    pub(crate) fn patch_in_quarter(
-        &self,
-        columns: (f64, f64),
-        rows: (f64, f64),
-        quarter: usize,
-    ) -> Option<Patch> {
-        let (centre, half) = middle(columns, rows);
-        let patch = self.patch_about(centre.0, centre.1, half, quarter);
-        (patch.sound_beyond(self) == 1).then_some(patch)
-    }
-
-    /// Whether a rectangle is better cut into a left and a right half than into an upper and a lower one: the longer
+    /// Whether a rectangle is better cut into left and right parts than into upper and lower ones: the longer
     /// way about the hole's direction, where all that is curved is.
     pub(crate) fn is_wide(&self, columns: (f64, f64), rows: (f64, f64)) -> bool {
         let (centre, half) = middle(columns, rows);
@@ -127,18 +114,11 @@ impl Picture<'_> {
         right.abs() * half[0] > down.abs() * half[1]
     }
 
-    /// Where in a rectangle the rays meet the plane at a quarter turn, D = 0: positive in the first one.
-    pub(crate) fn border(&self, columns: (f64, f64), rows: (f64, f64)) -> Line {
-        self.border_about(middle(columns, rows).0)
-    }
-
-    /// The same about a place.
+    /// Where about a place the rays meet the plane at a quarter turn, D = 0: positive in the first one.
     pub(crate) fn border_about(&self, centre: (f64, f64)) -> Line {
-        let view = self.view();
-        let (x, y) = (view.x_at(centre.0), view.y_at(centre.1));
         let [right, down] = self.per_pixel;
         Line {
-            value: self.d * view.ta().at(x, y),
+            value: self.d * self.part(self.ta, centre.0, centre.1),
             per_column: self.d * right.ta,
             per_row: self.d * down.ta,
         }
@@ -359,6 +339,15 @@ impl<T: Real> Patch<T> {
     #[inline(always)]
     pub(crate) fn bend(&self, bent: &Bent<T>) -> T {
         bent.bend.most() * self.half_square() + bent.rounding
+    }
+
+    /// By how much an edge is below its tangent over the patch, on the mean.
+    #[inline(always)]
+    pub(crate) fn mean_bend(&self, bent: &Bent<T>) -> T {
+        let [right, down] = self.spot.across;
+        let [columns, rows] = self.half;
+        let squares = right * right * (columns * columns) + down * down * (rows * rows);
+        bent.bend.middle * squares * (0.5 / 3.0)
     }
 
     /// What of an edge over the patch is not its cubic, at most.

@@ -26,6 +26,11 @@ use crate::scene::{Affine, View};
 pub(crate) struct Picture<'a> {
     pub(super) curves: &'a Isoradials,
     view: &'a View,
+    z: Affine,
+    pub(super) ta: Affine,
+    tb: Affine,
+    /// Twice the column and the row of the picture's centre.
+    middle: [f64; 2],
     /// `|n·p̂|`.
     pub(super) n: f64,
     /// D₁, D over `t_a`.
@@ -84,11 +89,25 @@ pub(crate) struct Line<T = f64> {
 impl<'a> Picture<'a> {
     /// The rays of a view that the curves were drawn for.
     pub(crate) fn new(view: &'a View, curves: &'a Isoradials) -> Self {
+        let middle = [f64::from(view.width()), f64::from(view.height())];
+        Self::with_parts(view, curves, [view.z(), view.ta(), view.tb()], middle)
+    }
+
+    fn with_parts(
+        view: &'a View,
+        curves: &'a Isoradials,
+        parts: [Affine; 3],
+        middle: [f64; 2],
+    ) -> Self {
         let pixel = view.pixel_side();
-        let (z, ta, tb) = (view.z(), view.ta(), view.tb());
+        let [z, ta, tb] = parts;
         Self {
             curves,
             view,
+            z,
+            ta,
+            tb,
+            middle,
             n: view.n_p().abs(),
             d: view.plane_slope(),
             // Rows count downwards, Y upwards.
@@ -107,6 +126,26 @@ impl<'a> Picture<'a> {
         }
     }
 
+    /// The same rays in a picture turned about its centre, from where columns and rows count, so that the line between
+    /// the quarter turns lies along a row; and the cosine and the sine of the angle it is turned by.
+    pub(crate) fn turned(&self) -> (Self, [f64; 2]) {
+        let [right, down] = self.per_pixel;
+        let steepest = (right.ta * right.ta + down.ta * down.ta).sqrt();
+        let [cosine, sine] = if steepest > 0.0 {
+            [down.ta / steepest, -right.ta / steepest]
+        } else {
+            [1.0, 0.0]
+        };
+        let turned = |part: Affine| Affine {
+            at_centre: part.at_centre,
+            per_x: part.per_x * cosine - part.per_y * sine,
+            per_y: part.per_x * sine + part.per_y * cosine,
+        };
+        let parts = [self.z, self.ta, self.tb].map(turned);
+        let picture = Self::with_parts(self.view, self.curves, parts, [0.0; 2]);
+        (picture, [cosine, sine])
+    }
+
     /// The curves.
     pub(crate) fn curves(&self) -> &'a Isoradials {
         self.curves
@@ -120,14 +159,14 @@ impl<'a> Picture<'a> {
     /// The quarter turn in which the ray at a place meets the disk's plane.
     #[inline]
     pub(crate) fn quarter_at(&self, (column, row): (f64, f64)) -> usize {
-        let ta = self.part(self.view.ta(), column, row);
+        let ta = self.part(self.ta, column, row);
         usize::from(self.d * ta < 0.0)
     }
 
     #[inline(always)]
-    fn part<T: Real>(&self, affine: Affine, column: T, row: T) -> T {
-        let x = (column * 2.0 - f64::from(self.view.width())) * (0.5 * self.view.pixel_side());
-        let y = -(row * 2.0 - f64::from(self.view.height())) * (0.5 * self.view.pixel_side());
+    pub(super) fn part<T: Real>(&self, affine: Affine, column: T, row: T) -> T {
+        let x = (column * 2.0 - self.middle[0]) * (0.5 * self.view.pixel_side());
+        let y = -(row * 2.0 - self.middle[1]) * (0.5 * self.view.pixel_side());
         x * affine.per_x + affine.at_centre + y * affine.per_y
     }
 
@@ -136,9 +175,9 @@ impl<'a> Picture<'a> {
     #[inline(always)]
     pub(crate) fn spot<T: Real>(&self, column: T, row: T, quarter: usize) -> Spot<T> {
         let (z, ta, tb) = (
-            self.part(self.view.z(), column, row),
-            self.part(self.view.ta(), column, row),
-            self.part(self.view.tb(), column, row),
+            self.part(self.z, column, row),
+            self.part(self.ta, column, row),
+            self.part(self.tb, column, row),
         );
         let s = (ta * ta + tb * tb).sqrt();
         let inverse = s.all(1.0) / s;

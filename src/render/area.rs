@@ -86,20 +86,8 @@ fn within<T: Real>(inner: Option<Line<T>>, outer: Option<Line<T>>, sides: [f64; 
     most.less(most.all(0.0))
 }
 
-/// The share of a rectangle of such sides, in pixels, that is on the positive side of `border` and in any of the bands; with
-/// no band, in all of it.
-pub(super) fn share_beside(border: &Line, bands: &[Band], sides: [f64; 2]) -> f64 {
-    let part = Polygon::rectangle(sides).above(border);
-    let off = if bands.is_empty() {
-        0.0
-    } else {
-        off(&part, bands)
-    };
-    ((part.area() - off) / (sides[0] * sides[1])).max(0.0)
-}
-
 /// The area of a polygon that lies off all bands.
-fn off(polygon: &Polygon, bands: &[Band]) -> f64 {
+pub(super) fn off(polygon: &Polygon, bands: &[Band]) -> f64 {
     let Some((band, others)) = bands.split_first() else {
         return polygon.area();
     };
@@ -116,7 +104,7 @@ fn off(polygon: &Polygon, bands: &[Band]) -> f64 {
 
 /// A convex polygon: a rectangle with some of its corners cut off, each cut by one line more.
 #[derive(Debug, Clone, Copy)]
-struct Polygon {
+pub(super) struct Polygon {
     corners: [(f64, f64); MOST],
     count: usize,
 }
@@ -125,15 +113,49 @@ struct Polygon {
 const MOST: usize = 20;
 
 impl Polygon {
-    fn rectangle([wide, high]: [f64; 2]) -> Self {
+    pub(super) fn rectangle([wide, high]: [f64; 2]) -> Self {
         let (x, y) = (0.5 * wide, 0.5 * high);
         let mut corners = [(0.0, 0.0); MOST];
         corners[..4].copy_from_slice(&[(-x, -y), (x, -y), (x, y), (-x, y)]);
         Self { corners, count: 4 }
     }
 
+    /// The same in coordinates that are turned by an angle.
+    pub(super) fn turned(mut self, cosine: f64, sine: f64) -> Self {
+        for (x, y) in &mut self.corners[..self.count] {
+            (*x, *y) = (*x * cosine + *y * sine, *y * cosine - *x * sine);
+        }
+        self
+    }
+
+    /// Whether it is less than a triangle.
+    pub(super) fn is_empty(&self) -> bool {
+        self.count < 3
+    }
+
+    /// Its least and greatest x, and y.
+    pub(super) fn extent(&self) -> [(f64, f64); 2] {
+        let (x, y) = self.corners[0];
+        let corners = self.corners[1..self.count].iter();
+        corners.fold([(x, x), (y, y)], |[columns, rows], &(x, y)| {
+            [
+                (columns.0.min(x), columns.1.max(x)),
+                (rows.0.min(y), rows.1.max(y)),
+            ]
+        })
+    }
+
+    /// A place within.
+    pub(super) fn middle(&self) -> (f64, f64) {
+        let corners = &self.corners[..self.count];
+        let share = 1.0 / self.count as f64;
+        corners.iter().fold((0.0, 0.0), |(x, y), corner| {
+            (x + share * corner.0, y + share * corner.1)
+        })
+    }
+
     /// The part on the side `g ≥ 0` of a line (Sutherland & Hodgman 1974, *Commun. ACM* 17, 32).
-    fn above(&self, line: &Line) -> Self {
+    pub(super) fn above(&self, line: &Line) -> Self {
         let g = |(x, y): (f64, f64)| line.value + line.per_column * x + line.per_row * y;
         let mut part = Self {
             corners: [(0.0, 0.0); MOST],
@@ -159,7 +181,7 @@ impl Polygon {
         part
     }
 
-    fn area(&self) -> f64 {
+    pub(super) fn area(&self) -> f64 {
         let twice: f64 = (0..self.count)
             .map(|i| {
                 let (a, b) = (self.corners[i], self.corners[(i + 1) % self.count]);

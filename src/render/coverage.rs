@@ -6,17 +6,18 @@
 //! form, so that a straight edge is drawn exactly, and rings thinner than a pixel keep their light. The disk is the
 //! union of its orders' bands: where edges of several orders share a pixel its square is clipped at all of them.
 //!
-//! A pixel over which an edge bends, where the whole ring is some pixels across, is cut in halves across the way it
-//! bends, and those again where they must be: so are pixels that look at the hole.
+//! A pixel over which an edge bends, where the whole ring is some pixels across or close to the disk's plane, is cut in
+//! [strips](super::strips) across the way it bends, and those again where they must be: so are pixels that look at the hole
+//! or at where the quarter turns meet.
 
-use super::area::{apart, share_beside, share_of_band, share_of_union};
+use super::area::{apart, share_of_band, share_of_union};
 use super::blocks::{Asked, Canvas};
 use super::group::Group;
+use super::strips::Strips;
 use super::tiles::{Kind, Pixels, Threads, fill_frame};
 use super::{RenderError, blank};
 use crate::isoradial::{
-    Band, Bent, Bundle, Edge, EdgeOf, Isoradials, Line, Listing, MOST_BANDS, Open, Patch, Picture,
-    Verdict,
+    Band, Bent, Edge, EdgeOf, Isoradials, Line, Listing, MOST_BANDS, Open, Patch, Picture,
 };
 use crate::lanes::{Four, Level, dispatch};
 use crate::scene::View;
@@ -24,17 +25,10 @@ use crate::scene::View;
 /// What is not linear of an edge over a pixel, in pixels, beyond which the pixel is cut up.
 const STRAIGHT: f64 = 1.0 / 32.0;
 
-/// How far about a pixel, or a part of one, its edges are looked for, as a share of its sides: farther than the tangent of
+/// How far about a pixel its edges are looked for, as a share of its sides: farther than the tangent of
 /// a straight one is off. So it makes no difference which edges beyond that are looked at too: their tangents do not
 /// reach the pixel.
 const MARGIN: f64 = 1.0 / 16.0;
-
-/// The smallest parts that a pixel is cut into where an edge bends, as shares of it.
-const SMALLEST: f64 = 1.0 / 256.0;
-
-/// The same where there is nothing straight, about the hole's direction and from close to the disk's plane: what is left
-/// is what its centre sees.
-const SMALLEST_OF_ALL: f64 = 1.0 / 4096.0;
 
 /// The frame's pixels, row by row from the top, on all threads of the current rayon pool.
 ///
@@ -84,6 +78,7 @@ pub fn render_every_pixel(view: &View, curves: &Isoradials) -> Result<Vec<u8>, R
 /// What of a pixel is the disk.
 pub(super) struct Shares<'a> {
     picture: Picture<'a>,
+    strips: Strips<'a>,
 }
 
 impl Pixels for Shares<'_> {
@@ -99,8 +94,7 @@ impl Pixels for Shares<'_> {
     };
 
     fn value(&self, column: usize, row: usize, open: Option<Open>) -> u8 {
-        let (left, top) = (column as f64, row as f64);
-        byte(self.share((left, left + 1.0), (top, top + 1.0), open))
+        byte(self.share(column, row, open))
     }
 
     fn draw_along(
@@ -275,14 +269,21 @@ impl Place<'_> {
     }
 }
 
+impl<T: Four> Line<T> {
+    /// That of one of the pixels, or strips.
+    pub(super) fn one(&self, i: usize) -> Line {
+        Line {
+            value: self.value.into()[i],
+            per_column: self.per_column.into()[i],
+            per_row: self.per_row.into()[i],
+        }
+    }
+}
+
 impl<T: Four> Band<T> {
     /// That of one of the pixels.
     fn one(&self, i: usize) -> Band {
-        let one = |line: &Line<T>| Line {
-            value: line.value.into()[i],
-            per_column: line.per_column.into()[i],
-            per_row: line.per_row.into()[i],
-        };
+        let one = |line: &Line<T>| line.one(i);
         Band {
             outer: self.outer.as_ref().map(one),
             inner: self.inner.as_ref().map(one),
@@ -305,9 +306,9 @@ impl OpenEdges {
         &self.bands[..self.count]
     }
 
-    /// Whether they are their tangents over a rectangle of this area, in pixels.
-    fn are_straight(&self, area: f64) -> bool {
-        self.bend <= STRAIGHT * area.sqrt()
+    /// Whether they are their tangents.
+    fn are_straight(&self) -> bool {
+        self.bend <= STRAIGHT
     }
 }
 
@@ -353,8 +354,10 @@ enum Seen {
 
 impl<'a> Shares<'a> {
     fn new(view: &'a View, curves: &'a Isoradials) -> Self {
+        let picture = Picture::new(view, curves);
         Self {
-            picture: Picture::new(view, curves),
+            strips: Strips::new(&picture),
+            picture,
         }
     }
 
@@ -385,73 +388,19 @@ impl<'a> Shares<'a> {
         }
     }
 
-    /// The share of a rectangle.
-    fn share(&self, columns: (f64, f64), rows: (f64, f64), open: Option<Open>) -> f64 {
-        let sides = [columns.1 - columns.0, rows.1 - rows.0];
-        let area = sides[0] * sides[1];
-        let Some(patch) = self.picture.patch(about(columns), about(rows)) else {
-            return if let Some(share) = self.share_of_both(columns, rows) {
-                share
-            } else if area <= SMALLEST_OF_ALL {
-                let middle = |(from, to): (f64, f64)| 0.5 * (from + to);
-                f64::from(super::mask::sees(
-                    self.picture.view(),
-                    self.picture.curves(),
-                    (middle(columns), middle(rows)),
-                ))
-            } else {
-                self.halves(columns, rows, None)
-            };
-        };
-        match self.sift(&patch, open) {
-            Seen::All => 1.0,
-            Seen::Nothing => 0.0,
-            Seen::Along(edges) if edges.are_straight(area) => share_of_union(edges.bands(), sides),
-            // Edges that bend this much may be far from their tangents, and show where no tile lets them.
-            Seen::Along(edges) if area <= SMALLEST => {
-                let bundle = Bundle::new(self.picture.view(), columns, rows);
-                let curves = self.picture.curves();
-                match bundle.map_or(Verdict::Mixed, |bundle| curves.verdict(&bundle)) {
-                    Verdict::Hit => 1.0,
-                    Verdict::Miss => 0.0,
-                    Verdict::Mixed => share_of_union(edges.bands(), sides),
-                }
+    /// The share of a pixel.
+    fn share(&self, column: usize, row: usize, open: Option<Open>) -> f64 {
+        let (left, top) = (column as f64, row as f64);
+        let patch = self
+            .picture
+            .patch(about((left, left + 1.0)), about((top, top + 1.0)));
+        match patch.map(|patch| self.sift(&patch, open)) {
+            Some(Seen::All) => 1.0,
+            Some(Seen::Nothing) => 0.0,
+            Some(Seen::Along(edges)) if edges.are_straight() => {
+                share_of_union(edges.bands(), PIXEL)
             }
-            Seen::Along(edges) => self.halves(columns, rows, Some(edges.open)),
+            _ => self.strips.share(column, row),
         }
-    }
-
-    /// The share of a rectangle whose rays meet the plane in both quarter turns, which a straight line divides; if its
-    /// edges are straight.
-    fn share_of_both(&self, columns: (f64, f64), rows: (f64, f64)) -> Option<f64> {
-        let sides = [columns.1 - columns.0, rows.1 - rows.0];
-        let border = self.picture.border(columns, rows);
-        let mut share = 0.0;
-        for (quarter, border) in [border, border.opposite()].into_iter().enumerate() {
-            let patch = self
-                .picture
-                .patch_in_quarter(about(columns), about(rows), quarter)?;
-            share += match self.sift(&patch, None) {
-                Seen::All => share_beside(&border, &[], sides),
-                Seen::Nothing => 0.0,
-                Seen::Along(edges) if edges.are_straight(sides[0] * sides[1]) => {
-                    share_beside(&border, edges.bands(), sides)
-                }
-                Seen::Along(_) => return None,
-            };
-        }
-        Some(share.min(1.0))
-    }
-
-    /// The share of a rectangle, from its two halves'.
-    fn halves(&self, columns: (f64, f64), rows: (f64, f64), open: Option<Open>) -> f64 {
-        let (column, row) = (0.5 * (columns.0 + columns.1), 0.5 * (rows.0 + rows.1));
-        let sum = if self.picture.is_wide(columns, rows) {
-            self.share((columns.0, column), rows, open)
-                + self.share((column, columns.1), rows, open)
-        } else {
-            self.share(columns, (rows.0, row), open) + self.share(columns, (row, rows.1), open)
-        };
-        0.5 * sum
     }
 }

@@ -29,6 +29,7 @@ pub mod mask;
 pub mod needs;
 pub mod pixelwise;
 pub mod png;
+mod strips;
 mod tiles;
 
 pub use tiles::cull;
