@@ -33,11 +33,11 @@ impl Plan<'_> {
         };
         if unresolved > 0 {
             let frames = match unresolved {
-                1 => "its pixels are".into(),
-                count => format!("the pixels of {count} frames are"),
+                1 => "every pixel's ray is".into(),
+                count => format!("every pixel's ray of {count} such frames is"),
             };
             report.note(format_args!(
-                "the isoradial curves of {of} are only right to {:.1e} pixels, so {frames} followed ray by ray, which takes a hundred times as long and leaves hard edges",
+                "the isoradial curves of {of} are only right to {:.1e} pixels, so {frames} followed by itself, which takes a hundred times as long and leaves hard edges",
                 error.total()
             ));
         }
