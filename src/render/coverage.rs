@@ -7,7 +7,7 @@
 //! union of its orders' bands: where edges of several orders share a pixel its square is clipped at all of them.
 //!
 //! A pixel over which an edge bends, where the whole ring is some pixels across or close to the disk's plane, is cut in
-//! [strips](super::strips) across the way it bends, and those again where they must be: so are pixels that look at the hole
+//! strips (`strips.rs`) across the way it bends, and those again where they must be: so are pixels that look at the hole
 //! or at where the quarter turns meet.
 
 use super::area::{apart, share_of_band, share_of_union};
