@@ -4,13 +4,16 @@
 //! A program that is not installed is passed over, unless `DARKNESS_TOOLS` names it.
 #![cfg(unix)]
 
-use std::collections::BTreeMap;
+#[path = "common/animated.rs"]
+mod animated;
+
 use std::env;
 use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use animated::files;
 use assert_cmd::cargo::cargo_bin;
 use darkness::scene::Animation;
 use tempfile::tempdir;
@@ -75,19 +78,6 @@ fn write_scene(path: &Path) {
         .replace("width = 1920", "width = 160")
         .replace("height = 1080", "height = 90");
     fs::write(path, toml).unwrap();
-}
-
-/// The files of a folder and their bytes.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let entries = fs::read_dir(folder).unwrap().map(Result::unwrap);
-    entries
-        .map(|entry| {
-            (
-                entry.file_name().into_string().unwrap(),
-                fs::read(entry.path()).unwrap(),
-            )
-        })
-        .collect()
 }
 
 #[test]

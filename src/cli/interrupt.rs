@@ -22,6 +22,15 @@ pub(super) struct Interrupted {
     done: String,
 }
 
+/// Whether whoever started the process had it ignore a signal, as shells do with Ctrl-C for what scripts run in the background.
+/// Not known everywhere.
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    mask.is_some_and(|mask| mask & (1 << (signal - 1)) != 0)
+}
+
 /// A file that grows beyond a quota (`ulimit -f`) is an error of the write that does it, and not the end of the process.
 pub(super) fn survive_quotas() {
     #[cfg(unix)]
@@ -50,6 +59,9 @@ impl Interrupt {
         let interrupt = Self::default();
         let again = Arc::new(AtomicBool::new(false));
         for signal in [SIGINT, SIGTERM] {
+            if is_ignored(signal) {
+                continue;
+            }
             // In this order: the first signal finds the second's condition unset.
             flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&again))?;
             flag::register(signal, Arc::clone(&again))?;

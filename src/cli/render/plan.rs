@@ -55,6 +55,9 @@ impl<'a> Plan<'a> {
         {
             target::check_room(path, format.bytes(first.image(), count))?;
         }
+        for number in frames.iter() {
+            animation.check(number)?;
+        }
         let plan = Self {
             args,
             animation,
