@@ -34,6 +34,9 @@ pub(super) struct MethodArgs {
     method: MethodName,
     #[arg(long, value_name = "FILE", help = TABLE_HELP)]
     table: Option<PathBuf>,
+    /// Read the table into memory, in place of mapping its file: for network disks, and for files that others may cut short
+    #[arg(long)]
+    no_mmap: bool,
     /// The error aimed at in an angle by --method integrate, in radians, 1e-13 to 1e-3; rays that wind for more than
     /// ten radians near the photon sphere may miss it, and their fate [default: 1e-9]
     #[arg(long, value_name = "T", value_parser = tolerance)]
@@ -76,11 +79,11 @@ pub(super) enum Method {
     Integrate(Adaptive),
 }
 
-/// A table, from a file or just made.
+/// A table: a file that is mapped, or numbers in memory.
 #[derive(Debug)]
 pub(super) enum AnyTable {
     Mapped(Table<Mmap>),
-    Made(Table<Memory>),
+    Held(Table<Memory>),
 }
 
 impl AnyTable {
@@ -88,7 +91,7 @@ impl AnyTable {
     pub(super) fn lookup(&self) -> Lookup<'_> {
         match self {
             Self::Mapped(table) => table.lookup(),
-            Self::Made(table) => table.lookup(),
+            Self::Held(table) => table.lookup(),
         }
     }
 
@@ -96,14 +99,14 @@ impl AnyTable {
     pub(super) fn bytes(&self) -> &[u8] {
         match self {
             Self::Mapped(table) => table.bytes(),
-            Self::Made(table) => table.bytes(),
+            Self::Held(table) => table.bytes(),
         }
     }
 
     pub(super) fn metadata(&self) -> &Metadata {
         match self {
             Self::Mapped(table) => table.metadata(),
-            Self::Made(table) => table.metadata(),
+            Self::Held(table) => table.metadata(),
         }
     }
 }
@@ -119,6 +122,9 @@ impl MethodArgs {
         if self.integrate_tolerance.is_some() && self.method != MethodName::Integrate {
             return Err(Misuse::ToleranceUnused.into());
         }
+        if self.no_mmap && self.method != MethodName::Table {
+            return Err(Misuse::MmapUnused.into());
+        }
         let method = match self.method {
             MethodName::Exact => Method::Exact,
             MethodName::Integrate => Method::Integrate(
@@ -129,8 +135,13 @@ impl MethodArgs {
                 let Some(place) = self.place(needed) else {
                     return Ok(Checked::Ready(Method::NoTable));
                 };
-                match (table::open(&place.path), needed) {
-                    (Ok(table), _) => Method::Table(AnyTable::Mapped(table)),
+                let opened = if self.no_mmap {
+                    table::read(&place.path).map(AnyTable::Held)
+                } else {
+                    table::open(&place.path).map(AnyTable::Mapped)
+                };
+                match (opened, needed) {
+                    (Ok(table), _) => Method::Table(table),
                     (Err(TableError::Missing { path }), Some(name))
                         if place.origin == Origin::Default =>
                     {
@@ -219,7 +230,7 @@ impl Checked {
                 path.display()
             ));
         }
-        Ok(Method::Table(AnyTable::Made(table)))
+        Ok(Method::Table(AnyTable::Held(table)))
     }
 }
 

@@ -114,6 +114,8 @@ enum Misuse {
     StillJob { path: PathBuf },
     #[error("{}: a job is a text, and this name has characters that cannot stand in one", path.display())]
     UnprintablePath { path: PathBuf },
+    #[error("--no-mmap is about a table, which only --method table reads")]
+    MmapUnused,
     #[error("--require-table is about a table, which only --method table reads")]
     TableUnused,
     #[error("{}: -o and --csv name one file; give each its own", path.display())]

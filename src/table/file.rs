@@ -1,14 +1,14 @@
 //! Tables in files: mapped where they are read, written whole or not at all.
 
 use std::fs::File;
-use std::io::{self, Write};
+use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use memmap2::Mmap;
+use memmap2::{Mmap, MmapOptions};
 
-use super::format::FormatError;
+use super::format::{self, FormatError};
 use super::spec::Spec;
-use super::{FixedBytes, Table};
+use super::{FixedBytes, Memory, Table};
 
 /// Why a table's file could not be used or written. Each names the file, and says what to do.
 #[derive(Debug, thiserror::Error)]
@@ -83,41 +83,79 @@ pub fn default_path(name: &str) -> PathBuf {
     Path::new("tables").join(format!("{name}.table"))
 }
 
-/// Maps the table at `path` and checks every byte of it.
+/// Maps the table at `path` and checks every byte of it. A file that is too long or too short, or none of a table, is not mapped.
 ///
-/// The file must not be changed while it is mapped; this program never does, since it replaces files by renaming.
+/// The file must not be changed or cut short in place while it is mapped: what is cut off is a signal that ends the process
+/// (SIGBUS). This program never does it, since it replaces files by renaming, which leaves a mapped one as it was. For
+/// files that others may change, and for network disks, [`read`] is there.
 ///
 /// # Errors
 /// [`TableError`]: the file is missing, cannot be read, or is no table that this version can use.
 pub fn open(path: &Path) -> Result<Table<Mmap>, TableError> {
-    let unreadable = |source: io::Error| match source.kind() {
-        io::ErrorKind::NotFound => TableError::Missing { path: path.into() },
-        _ => TableError::Unreadable {
-            path: path.into(),
-            source,
-        },
-    };
-    // Asked before it is opened: to open a pipe is to wait for its other end.
-    let kind = std::fs::metadata(path).map_err(unreadable)?;
-    if !kind.is_file() {
-        let source = io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file");
-        return Err(unreadable(source));
-    }
-    let file = File::open(path).map_err(unreadable)?;
-    let unusable = |problem| TableError::Unusable {
-        path: path.into(),
-        problem,
-    };
-    if kind.len() == 0 {
-        // An empty file cannot be mapped on every system.
-        return Err(unusable(FormatError::Foreign));
-    }
+    let (file, _) = sized(path)?;
     // SAFETY: the map is read-only and private to this process, and lives as long as the table over it. The contract
     // is that nobody changes the file's bytes in place meanwhile; this program replaces tables by renaming, which
     // leaves a mapped file as it was.
     #[allow(unsafe_code)]
-    let map = unsafe { Mmap::map(&file) }.map_err(unreadable)?;
-    Table::from_bytes(map).map_err(unusable)
+    let map = unsafe { MmapOptions::new().populate().map(&file) };
+    let map = map.map_err(|error| unreadable(path, error))?;
+    Table::from_bytes(map).map_err(|problem| unusable(path, problem))
+}
+
+/// Reads the table at `path` into memory and checks every byte of it: whatever becomes of the file then, the table stays.
+///
+/// # Errors
+/// Those of [`open`].
+pub fn read(path: &Path) -> Result<Table<Memory>, TableError> {
+    let (file, length) = sized(path)?;
+    let mut words = vec![0_u64; length.div_ceil(8)];
+    let bytes = &mut bytemuck::cast_slice_mut(&mut words)[..length];
+    let cut_short = |error: io::Error| match error.kind() {
+        io::ErrorKind::UnexpectedEof => unusable(path, FormatError::Changed),
+        _ => unreadable(path, error),
+    };
+    (&file).read_exact(bytes).map_err(cut_short)?;
+    if !length.is_multiple_of(8) {
+        let what = "its numbers do not have eight bytes each";
+        return Err(unusable(path, FormatError::Damaged { what }));
+    }
+    Table::from_bytes(Memory(words)).map_err(|problem| unusable(path, problem))
+}
+
+/// A table's file and its length, which is what its first bytes say.
+fn sized(path: &Path) -> Result<(File, usize), TableError> {
+    let unreadable = |error| unreadable(path, error);
+    // Asked before it is opened: to open a pipe is to wait for its other end.
+    if !std::fs::metadata(path).map_err(unreadable)?.is_file() {
+        let source = io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file");
+        return Err(unreadable(source));
+    }
+    let mut file = File::open(path).map_err(unreadable)?;
+    let length = file.metadata().map_err(unreadable)?.len();
+    let mut start = Vec::with_capacity(format::METADATA_AT);
+    (&file)
+        .take(format::METADATA_AT as u64)
+        .read_to_end(&mut start)
+        .map_err(unreadable)?;
+    format::layout(&start, length).map_err(|problem| unusable(path, problem))?;
+    file.rewind().map_err(unreadable)?;
+    let length = usize::try_from(length).map_err(|_| unusable(path, FormatError::Changed))?;
+    Ok((file, length))
+}
+
+fn unreadable(path: &Path, source: io::Error) -> TableError {
+    let path = path.into();
+    match source.kind() {
+        io::ErrorKind::NotFound => TableError::Missing { path },
+        _ => TableError::Unreadable { path, source },
+    }
+}
+
+fn unusable(path: &Path, problem: FormatError) -> TableError {
+    TableError::Unusable {
+        path: path.into(),
+        problem,
+    }
 }
 
 /// Writes a table to `path`, whole or not at all; its folder is made where it is missing.

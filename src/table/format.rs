@@ -44,7 +44,8 @@ const METADATA_CRC_AT: usize = 16;
 const NUMBERS_CRC_AT: usize = 20;
 const NUMBERS_LENGTH_AT: usize = 24;
 const PREAMBLE_CRC_AT: usize = 32;
-const METADATA_AT: usize = 36;
+/// How many bytes tell how long the file is.
+pub(crate) const METADATA_AT: usize = 36;
 const ALIGNMENT: usize = 64;
 
 /// Far above what [`Metadata`] needs (about 200 bytes); a damaged length cannot make the decoder allocate more.
@@ -89,6 +90,9 @@ pub enum FormatError {
         /// Bytes there are.
         actual: u64,
     },
+    /// The file changed while it was read.
+    #[error("it is being written or cut by another process")]
+    Changed,
     /// Some bytes are not what was written.
     #[error("it is damaged: {what}")]
     Damaged {
@@ -141,21 +145,24 @@ fn u64_at(bytes: &[u8], at: usize) -> u64 {
     u64::from_le_bytes(core::array::from_fn(|k| bytes[at + k]))
 }
 
-/// Checks every byte of a table.
-pub(crate) fn parse(bytes: &[u8]) -> Result<Layout, FormatError> {
-    let actual = bytes.len() as u64;
-    let seen = bytes.len().min(MAGIC.len());
-    if bytes[..seen] != MAGIC[..seen] || bytes.is_empty() {
+/// Where the metadata of a file of `actual` bytes ends, and where its numbers begin: by its first bytes, with nothing
+/// else read.
+///
+/// # Errors
+/// [`FormatError`]: another file, another version, a damaged preamble, or more or fewer bytes than it says.
+pub(crate) fn layout(start: &[u8], actual: u64) -> Result<(usize, usize), FormatError> {
+    let seen = start.len().min(MAGIC.len());
+    if start[..seen] != MAGIC[..seen] || start.is_empty() {
         return Err(FormatError::Foreign);
     }
-    if bytes.len() < METADATA_AT {
+    if start.len() < METADATA_AT {
         return Err(FormatError::Length {
             expected: METADATA_AT as u64,
             actual,
         });
     }
-    let found = u32_at(bytes, VERSION_AT);
-    if crc32fast::hash(&bytes[..PREAMBLE_CRC_AT]) != u32_at(bytes, PREAMBLE_CRC_AT) {
+    let found = u32_at(start, VERSION_AT);
+    if crc32fast::hash(&start[..PREAMBLE_CRC_AT]) != u32_at(start, PREAMBLE_CRC_AT) {
         // Another version may lay out its preamble in another way: a foreign version explains the mismatch as well as
         // damage does.
         return Err(if found == VERSION {
@@ -167,19 +174,27 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Layout, FormatError> {
     if found != VERSION {
         return Err(FormatError::Outdated { found });
     }
-    let metadata_length = u32_at(bytes, METADATA_LENGTH_AT) as usize;
+    let metadata_length = u32_at(start, METADATA_LENGTH_AT) as usize;
     if metadata_length > METADATA_LIMIT {
         return Err(damaged("its metadata is longer than metadata can be"));
     }
     let metadata_end = METADATA_AT + metadata_length;
     let numbers_at = metadata_end.next_multiple_of(ALIGNMENT);
-    let numbers_length = u64_at(bytes, NUMBERS_LENGTH_AT);
-    let expected = numbers_length
+    let expected = u64_at(start, NUMBERS_LENGTH_AT)
         .checked_add(numbers_at as u64)
         .ok_or(damaged("the length of its numbers is beyond any file's"))?;
     if actual != expected {
         return Err(FormatError::Length { expected, actual });
     }
+    Ok((metadata_end, numbers_at))
+}
+
+/// Checks every byte of a table.
+pub(crate) fn parse(bytes: &[u8]) -> Result<Layout, FormatError> {
+    let start = &bytes[..bytes.len().min(METADATA_AT)];
+    let (metadata_end, numbers_at) = layout(start, bytes.len() as u64)?;
+    let metadata_length = metadata_end - METADATA_AT;
+    let numbers_length = (bytes.len() - numbers_at) as u64;
     let encoded = &bytes[METADATA_AT..metadata_end];
     if crc32fast::hash(encoded) != u32_at(bytes, METADATA_CRC_AT) {
         return Err(damaged("the checksum of its metadata does not match"));

@@ -20,7 +20,7 @@ mod measure;
 mod spec;
 pub(crate) mod spline;
 
-pub use file::{TableError, default_path, open, save};
+pub use file::{TableError, default_path, open, read, save};
 pub use format::{FormatError, Metadata};
 pub use generate::{Progress, generate};
 pub use interpolation::{Cubic, Grid, Interpolation, Linear, Nearest};

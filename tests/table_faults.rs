@@ -1,0 +1,260 @@
+//! Guards against what other processes and the system do to a table while it is made, read and used.
+#![cfg(unix)]
+
+#[path = "common/animated.rs"]
+mod animated;
+
+use std::fs::{self, OpenOptions};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+use animated::{darkness, done, files, refused, with_animation};
+use darkness::table::{self, Spec, TableError, generate};
+use tempfile::tempdir;
+
+fn start(folder: &Path, args: &[&str]) -> Child {
+    darkness(folder, args)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap()
+}
+
+/// Whether there is a table, which then is whole.
+fn is_there(path: &Path) -> bool {
+    match table::open(path) {
+        Ok(_) => true,
+        Err(TableError::Missing { .. }) => false,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// Guards against a table of which a part is there, and against leftovers that nobody removes.
+#[test]
+fn killed_at_any_moment_the_table_is_the_old_one_or_the_new() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    let path = here.join("a.table");
+    let make = ["table", "draft", "-o", "a.table", "--force"];
+    let (mut kills, mut made) = (0, 0);
+    for moment in 0..50_u64 {
+        if moment % 2 == 0 {
+            let _ = fs::remove_file(&path);
+        }
+        let mut child = start(here, &make);
+        std::thread::sleep(Duration::from_micros(500 + 997 * moment));
+        kills += usize::from(child.try_wait().unwrap().is_none());
+        child.kill().unwrap();
+        child.wait().unwrap();
+        made += usize::from(is_there(&path));
+    }
+    assert!(kills > 10 && made > 10, "{kills} kills, {made} tables");
+    done(here, &make);
+    let whole = generate(&Spec::named("draft").unwrap(), &|_, _| ()).unwrap();
+    let left = files(here);
+    assert_eq!(
+        left.keys().map(String::as_str).collect::<Vec<_>>(),
+        ["a.table"]
+    );
+    assert!(left["a.table"] == whole.bytes());
+}
+
+#[test]
+fn several_at_once_make_one_whole_table() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    let make = ["table", "draft", "-o", "a.table", "--force"];
+    for _ in 0..3 {
+        let mut children: Vec<Child> = (0..4).map(|_| start(here, &make)).collect();
+        while children
+            .iter_mut()
+            .any(|child| child.try_wait().unwrap().is_none())
+        {
+            is_there(&here.join("a.table"));
+        }
+        for child in &mut children {
+            assert!(child.wait().unwrap().success());
+        }
+    }
+    assert_eq!(files(here).len(), 1);
+}
+
+#[test]
+fn a_table_that_is_replaced_while_it_is_mapped_stays_what_it_was() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("a.table");
+    let made = |name| generate(&Spec::named(name).unwrap(), &|_, _| ()).unwrap();
+    table::save(&made("draft"), &path).unwrap();
+    let mapped = table::open(&path).unwrap();
+    let before = mapped.bytes().to_vec();
+    table::save(&made("standard"), &path).unwrap();
+    assert!(mapped.bytes() == before);
+    assert_eq!(mapped.metadata().spec.name, "draft");
+    assert_eq!(table::open(&path).unwrap().metadata().spec.name, "standard");
+}
+
+/// Guards against a signal for a table that somebody cuts short: one that is read into memory is not his any more.
+#[test]
+fn a_table_that_is_cut_short_while_it_is_used_is_whole_in_memory() {
+    let folder = with_animation(400);
+    let here = folder.path();
+    let draw = [
+        "render",
+        "small.toml",
+        "--table",
+        "a.table",
+        "--no-mmap",
+        "-o",
+    ];
+    fs::copy(here.join("tables/draft.table"), here.join("a.table")).unwrap();
+    done(here, &[&draw[..], &["whole.raw"]].concat());
+    let mut child = start(here, &[&draw[..], &["cut.raw"]].concat());
+    // The film's file is begun once the table is read.
+    let begun = || files(here).keys().any(|name| name.starts_with(".cut.raw"));
+    while !begun() && child.try_wait().unwrap().is_none() {}
+    OpenOptions::new()
+        .write(true)
+        .open(here.join("a.table"))
+        .unwrap()
+        .set_len(0)
+        .unwrap();
+    assert!(child.wait().unwrap().success());
+    assert!(fs::read(here.join("cut.raw")).unwrap() == fs::read(here.join("whole.raw")).unwrap());
+    refused(
+        here,
+        &[&draw[..], &["no.raw"]].concat(),
+        1,
+        &["a.table", "not a darkness table"],
+    );
+    refused(
+        here,
+        &["render", "--method", "exact", "--no-mmap"],
+        2,
+        &["--no-mmap"],
+    );
+}
+
+/// Guards against a length that is believed: what is mapped is as long as its first bytes say.
+#[test]
+fn a_file_of_another_length_is_refused_before_it_is_mapped() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("a.table");
+    let whole = generate(&Spec::named("draft").unwrap(), &|_, _| ()).unwrap();
+    let bytes = whole.bytes();
+    for length in [0, 1, 7, 8, 35, 36, 63, 64, 1000, bytes.len() - 1] {
+        fs::write(&path, &bytes[..length]).unwrap();
+        let [mapped, read] = [table::open(&path).err(), table::read(&path).err()];
+        let [mapped, read] = [mapped, read].map(|error| error.unwrap().to_string());
+        assert_eq!(mapped, read);
+        let says = match length {
+            0 => "not a darkness table".into(),
+            _ => format!("{length} bytes long"),
+        };
+        assert!(mapped.contains(&says), "{length}: {mapped}");
+    }
+    fs::write(&path, [bytes, b"x"].concat()).unwrap();
+    let longer = table::open(&path).unwrap_err().to_string();
+    assert!(
+        longer.contains(&format!(
+            "{} bytes long and should be {}",
+            bytes.len() + 1,
+            bytes.len()
+        )),
+        "{longer}"
+    );
+    fs::write(&path, bytes).unwrap();
+    assert!(table::read(&path).unwrap().bytes() == table::open(&path).unwrap().bytes());
+}
+
+/// Guards against a table that each of many workers holds for itself.
+#[test]
+#[cfg(target_os = "linux")]
+fn many_processes_share_the_memory_of_one_table() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    done(here, &["table", "standard", "-o", "a.table"]);
+    let size = fs::metadata(here.join("a.table")).unwrap().len();
+    // They wait for rays.
+    let mut children: Vec<Child> = (0..64)
+        .map(|_| start(here, &["trace", "-", "--table", "a.table", "--quiet"]))
+        .collect();
+    // The memory of the table, each page shared out among those that hold it; how many have mapped it.
+    let shared_out = |children: &[Child]| {
+        let (mut total, mut count) = (0, 0);
+        for child in children {
+            let maps =
+                fs::read_to_string(format!("/proc/{}/smaps", child.id())).unwrap_or_default();
+            let of_table = maps.split_once("a.table\n").map(|(_, rest)| rest);
+            let line =
+                of_table.and_then(|rest| rest.lines().find_map(|line| line.strip_prefix("Pss:")));
+            let kib = line.and_then(|line| line.split_whitespace().next()?.parse::<u64>().ok());
+            total += 1024 * kib.unwrap_or(0);
+            count += usize::from(kib.is_some());
+        }
+        (total, count)
+    };
+    let mut seen = (0, 0);
+    for _ in 0..400 {
+        seen = shared_out(&children);
+        if seen.1 == 64 {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(25));
+    }
+    for child in &mut children {
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    println!("{} bytes for 64 processes, {size} in the file", seen.0);
+    assert_eq!(seen.1, 64);
+    assert!(
+        seen.0 > size / 2 && seen.0 < 2 * size,
+        "{} bytes of {size}",
+        seen.0
+    );
+}
+
+/// Guards against a file that is otherwise than its documentation draws it: a reader that knows only that reads it.
+#[test]
+fn the_documented_layout_is_the_files() {
+    let python = Command::new("python3").arg("--version").output();
+    if !python.is_ok_and(|python| python.status.success()) {
+        eprintln!("python3 is not installed: passed over");
+        return;
+    }
+    let folder = tempdir().unwrap();
+    let reader = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reader/read_table.py");
+    for name in ["draft", "standard"] {
+        let spec = Spec::named(name).unwrap();
+        let made = generate(&spec, &|_, _| ()).unwrap();
+        let path = folder.path().join("a.table");
+        table::save(&made, &path).unwrap();
+        let read = Command::new("python3")
+            .arg(reader)
+            .arg(&path)
+            .output()
+            .unwrap();
+        let told = String::from_utf8(read.stdout).unwrap();
+        assert!(
+            read.status.success(),
+            "{}",
+            String::from_utf8_lossy(&read.stderr)
+        );
+        let metadata = made.metadata();
+        let charts = [spec.critical, spec.weak, spec.trapped, spec.radial];
+        let nodes = charts.map(|nodes| format!("{}x{}", nodes.place, nodes.orbit));
+        let numbers = (made.bytes().len() - 1) / 8;
+        let words: Vec<&str> = told.split_whitespace().collect();
+        assert_eq!(words[0], name);
+        assert_eq!(words[3], metadata.measured_angles.to_string());
+        assert_eq!(words[4..8], nodes);
+        let count: usize = words[8].parse().unwrap();
+        assert!(
+            numbers - count < 64,
+            "{count} numbers in {} bytes",
+            made.bytes().len()
+        );
+    }
+}
