@@ -649,7 +649,7 @@ fn trace_takes_radial_rays_any_column_order_and_its_radii() {
 }
 
 #[test]
-fn trace_stops_at_a_bad_row_and_keeps_those_before() {
+fn trace_names_a_bad_row_and_goes_on_with_the_others() {
     let folder = with_draft();
     let here = folder.path();
     for (row, words) in [
@@ -673,8 +673,22 @@ fn trace_stops_at_a_bad_row_and_keeps_those_before() {
             "{stderr}"
         );
         let stdout = String::from_utf8(output.stdout).unwrap();
-        assert_eq!(stdout.lines().count(), 3, "{stdout}");
+        assert!(stderr.contains("1 of 3 rows"), "{stderr}");
+        // A header, and two events of each of the two good rows.
+        assert_eq!(stdout.lines().count(), 5, "{stdout}");
     }
+    // Of a file that is none of rays not every row is told.
+    let bad = "u0,dudphi\n".to_owned() + &"a,b\n".repeat(5000) + "0.1,-inf\n";
+    fs::write(here.join("rays.csv"), bad).unwrap();
+    let output = darkness(here, &["trace", "rays.csv", "--table", "a.table"])
+        .output()
+        .unwrap();
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(stderr.lines().count(), 101);
+    assert!(
+        stderr.contains("line 101: ") && stderr.contains("5000 of 5001 rows"),
+        "{stderr}"
+    );
     let mut headless = darkness(here, &["trace", "--table", "a.table"]);
     headless.write_stdin("0.1,0.2\n");
     refused(headless, 1, &["standard input, line 1", "u0"]);

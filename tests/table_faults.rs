@@ -5,11 +5,13 @@
 mod animated;
 
 use std::fs::{self, OpenOptions};
+use std::io::{self, Write};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
 use animated::{darkness, done, files, refused, with_animation};
+use darkness::output::write_whole;
 use darkness::table::{self, Spec, TableError, generate};
 use tempfile::tempdir;
 
@@ -134,6 +136,47 @@ fn a_table_that_is_cut_short_while_it_is_used_is_whole_in_memory() {
         2,
         &["--no-mmap"],
     );
+}
+
+/// A disk that is full after so many bytes.
+struct Filling<W> {
+    file: W,
+    room: usize,
+}
+
+impl<W: Write> Write for Filling<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let some = bytes.len().min(self.room);
+        if some == 0 && !bytes.is_empty() {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        let written = self.file.write(&bytes[..some])?;
+        self.room -= written;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+/// Guards against a part of a table in the place of a whole one, wherever the disk fills up.
+#[test]
+fn a_disk_that_fills_up_after_any_byte_leaves_the_old_table_and_nothing_else() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("a.table");
+    let made = generate(&Spec::named("draft").unwrap(), &|_, _| ()).unwrap();
+    let bytes = made.bytes();
+    fs::write(&path, "the old one").unwrap();
+    for room in 0..bytes.len() {
+        let failed = write_whole(&path, |file| Filling { file, room }.write_all(bytes));
+        assert_eq!(failed.unwrap_err().kind(), io::ErrorKind::StorageFull);
+    }
+    assert_eq!(files(folder.path()).len(), 1);
+    assert_eq!(fs::read(&path).unwrap(), b"the old one");
+    let room = bytes.len();
+    write_whole(&path, |file| Filling { file, room }.write_all(bytes)).unwrap();
+    assert!(is_there(&path));
 }
 
 /// Guards against a length that is believed: what is mapped is as long as its first bytes say.

@@ -33,6 +33,13 @@ pub(super) struct RaysError {
     problem: Problem,
 }
 
+impl RaysError {
+    /// Whether no line after this one can be read.
+    pub(super) fn is_final(&self) -> bool {
+        matches!(self.problem, Problem::Unreadable(_) | Problem::TooLong)
+    }
+}
+
 /// What is wrong with a line.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum Problem {

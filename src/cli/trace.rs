@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::method::{DEFAULT_TABLE, Method, MethodArgs};
-use super::progress::Report;
+use super::progress::{Report, warn};
 use super::rays_csv::Rays;
 use super::{Misuse, StdoutError, start_threads};
 use crate::orbit::exact::Exact;
@@ -53,6 +53,9 @@ fn radius(text: &str) -> Result<f64, String> {
     }
 }
 
+/// How many of the rows that are refused are told of one by one.
+const MOST_TOLD: u64 = 100;
+
 /// What is written and read at a time.
 const BUFFER: usize = 1 << 16;
 
@@ -70,7 +73,7 @@ pub(super) fn run(args: &TraceArgs, report: Report) -> anyhow::Result<()> {
         Method::Exact | Method::NoTable => trace(&Exact, &mut rays, &args.radii, &mut out),
         Method::Integrate(adaptive) => trace(adaptive, &mut rays, &args.radii, &mut out),
     };
-    // What comes before a refused row is right, and stays.
+    // What is traced is right, and stays.
     let flushed = out.flush().map_err(StdoutError);
     traced?;
     Ok(flushed?)
@@ -98,14 +101,34 @@ fn trace(
     out: &mut impl Write,
 ) -> anyhow::Result<()> {
     writeln!(out, "u0,dudphi,event,radius,angle").map_err(StdoutError)?;
-    while let Some(ray) = rays.next().transpose()? {
-        let events = orbits
-            .follow(ray, radii)
-            .map_err(|error| rays.error(error.into()))?;
-        for event in events {
-            write_event(out, ray, event.kind, event.radius, event.angle).map_err(StdoutError)?;
+    let (mut rows, mut refused) = (0_u64, 0_u64);
+    while let Some(ray) = rays.next() {
+        rows += 1;
+        let followed = ray.and_then(|ray| {
+            let events = orbits.follow(ray, radii);
+            let events = events.map_err(|error| rays.error(error.into()))?;
+            Ok((ray, events))
+        });
+        match followed {
+            Ok((ray, events)) => {
+                for event in events {
+                    write_event(out, ray, event.kind, event.radius, event.angle)
+                        .map_err(StdoutError)?;
+                }
+            }
+            Err(error) if error.is_final() => return Err(error.into()),
+            Err(error) => {
+                refused += 1;
+                if refused <= MOST_TOLD {
+                    warn(error);
+                }
+            }
         }
     }
+    anyhow::ensure!(
+        refused == 0,
+        "{refused} of {rows} rows hold no ray that can be followed; the others are traced"
+    );
     Ok(())
 }
 
