@@ -361,7 +361,13 @@ fn a_first_signal_finishes_the_frames_begun_and_a_rerun_the_rest() {
     }
     // A film that is not whole is not kept.
     let child = start(here, "film.y4m");
-    std::thread::sleep(Duration::from_millis(100));
+    // Its file is begun when signals are waited for.
+    let begun = || files(here).keys().any(|name| name.starts_with(".film.y4m"));
+    let start = Instant::now();
+    while !begun() {
+        assert!(start.elapsed() < Duration::from_secs(60));
+        std::thread::sleep(Duration::from_millis(1));
+    }
     Command::new("kill")
         .args(["-TERM", &child.id().to_string()])
         .status()
