@@ -1,6 +1,6 @@
 //! `darkness chart`: speed against accuracy, measured on this machine.
 
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -8,7 +8,7 @@ use clap::Args;
 
 use super::picture::Destination;
 use super::progress::{Report, duration};
-use super::{Misuse, StdoutError, Threads, start_threads, target};
+use super::{Misuse, Threads, print, start_threads, target};
 use crate::chart::{Chart, Effort, draw, write_csv};
 use crate::output::write_whole;
 use crate::scene::{DEFAULT_SCENE, Scene};
@@ -61,14 +61,6 @@ pub(super) fn run(args: &ChartArgs, report: Report) -> anyhow::Result<()> {
     let time = duration(start.elapsed());
     report.note(format_args!("{destination}: measured and drawn in {time}"));
     Ok(())
-}
-
-fn print(text: &str) -> Result<(), StdoutError> {
-    let mut stdout = io::stdout().lock();
-    stdout
-        .write_all(text.as_bytes())
-        .and_then(|()| stdout.flush())
-        .map_err(StdoutError)
 }
 
 /// Checks that the CSV can be written to `path`, and to nothing else that is read or written.

@@ -1,13 +1,12 @@
 //! `darkness job`: an animation as a job of a farm's scheduler.
 
-use std::io::{self, Write};
 use std::path::{Component, Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
 use super::progress::Report;
 use super::render::pattern::Pattern;
-use super::{Misuse, StdoutError};
+use super::{Misuse, print};
 use crate::render::needs::Needs;
 use crate::scene::{Animation, builtins};
 use crate::table;
@@ -131,12 +130,7 @@ pub(super) fn run(args: &JobArgs, report: Report) -> anyhow::Result<()> {
             )
         }
     };
-    let mut stdout = io::stdout().lock();
-    stdout
-        .write_all(text.as_bytes())
-        .and_then(|()| stdout.flush())
-        .map_err(StdoutError)?;
-    Ok(())
+    Ok(print(&text)?)
 }
 
 /// A path as text: the job is one.

@@ -17,7 +17,7 @@ mod table;
 mod target;
 mod trace;
 
-use std::io;
+use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -159,6 +159,15 @@ impl StdoutError {
     fn is_closed_pipe(&self) -> bool {
         self.0.kind() == io::ErrorKind::BrokenPipe
     }
+}
+
+/// Prints text for the user, or for whoever reads it on.
+fn print(text: &str) -> Result<(), StdoutError> {
+    let mut stdout = io::stdout().lock();
+    stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.flush())
+        .map_err(StdoutError)
 }
 
 /// The option of every verb that computes in parallel.

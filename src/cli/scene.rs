@@ -1,11 +1,10 @@
 //! `darkness scene`: the built-in scenes.
 
 use std::fmt::Write as _;
-use std::io::{self, Write as _};
 
 use clap::Args;
 
-use super::StdoutError;
+use super::print;
 use crate::scene::builtins;
 
 /// List the built-in scenes, or print one as TOML to start from
@@ -22,12 +21,7 @@ pub(super) fn run(args: &SceneArgs) -> anyhow::Result<()> {
         None => list()?,
         Some(name) => builtin(name)?.to_owned(),
     };
-    let mut stdout = io::stdout().lock();
-    stdout
-        .write_all(text.as_bytes())
-        .and_then(|()| stdout.flush())
-        .map_err(StdoutError)?;
-    Ok(())
+    Ok(print(&text)?)
 }
 
 /// Names and descriptions, one scene a line.

@@ -34,43 +34,26 @@ pub fn builtins() -> &'static [Builtin] {
     &BUILTINS
 }
 
+/// The scene in `builtin/NAME.toml`.
+macro_rules! builtin {
+    ($name:literal) => {
+        Builtin {
+            name: $name,
+            toml: include_str!(concat!("builtin/", $name, ".toml")),
+        }
+    };
+}
+
 static BUILTINS: [Builtin; 9] = [
-    Builtin {
-        name: "classic",
-        toml: include_str!("builtin/classic.toml"),
-    },
-    Builtin {
-        name: "face-on",
-        toml: include_str!("builtin/face-on.toml"),
-    },
-    Builtin {
-        name: "edge-on",
-        toml: include_str!("builtin/edge-on.toml"),
-    },
-    Builtin {
-        name: "close-up",
-        toml: include_str!("builtin/close-up.toml"),
-    },
-    Builtin {
-        name: "inside",
-        toml: include_str!("builtin/inside.toml"),
-    },
-    Builtin {
-        name: "photon-ring",
-        toml: include_str!("builtin/photon-ring.toml"),
-    },
-    Builtin {
-        name: "orbit",
-        toml: include_str!("builtin/orbit.toml"),
-    },
-    Builtin {
-        name: "approach",
-        toml: include_str!("builtin/approach.toml"),
-    },
-    Builtin {
-        name: "tilt",
-        toml: include_str!("builtin/tilt.toml"),
-    },
+    builtin!("classic"),
+    builtin!("face-on"),
+    builtin!("edge-on"),
+    builtin!("close-up"),
+    builtin!("inside"),
+    builtin!("photon-ring"),
+    builtin!("orbit"),
+    builtin!("approach"),
+    builtin!("tilt"),
 ];
 
 #[cfg(test)]
