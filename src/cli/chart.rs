@@ -1,6 +1,5 @@
 //! `darkness chart`: speed against accuracy, measured on this machine.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
