@@ -234,6 +234,11 @@ fn misuse_is_told_before_anything_is_done() {
     misused(&["small.toml", "-o", "f_#.y4m"], &["f_#.y4m", "film"]);
     misused(&["small.toml", "-o", "#/f.png"], &["folder's"]);
     misused(&["small.toml", "-o", "#_%d.png"], &["two places"]);
+    misused(
+        &["small.toml", "-o", "tables"],
+        &["tables is a folder", "tables/small_####.png"],
+    );
+    misused(&["small.toml", "-o", "new/"], &["new/small_####.png"]);
     misused(&["small.toml", "-o", "f_##.gif"], &[".png, .y4m and .raw"]);
     misused(&["small.toml", "--frames", "19-21"], &["19-21", "1 to 20"]);
     misused(

@@ -87,6 +87,8 @@ enum Misuse {
         "{}: {count} frames do not fit one picture: give the name a place for the number, as in f_####.png or f_%04d.png, choose one frame with --frames, or make a film with --format y4m", path.display()
     )]
     FramesWithoutNumber { path: PathBuf, count: u64 },
+    #[error("{} is a folder: name the files in it, as in {}", path.display(), example.display())]
+    Folder { path: PathBuf, example: PathBuf },
     #[error(
         "several frames go through a pipe as a film: add --format y4m or --format raw, or choose one frame with --frames"
     )]

@@ -57,6 +57,10 @@ impl Output {
         if to_stdout && io::stdout().is_terminal() && !args.dry_run {
             return Err(Misuse::PictureToTerminal.into());
         }
+        if is_folder(&path) {
+            let example = path.join(default_name(&args.scene, animation, args.format));
+            return Err(Misuse::Folder { path, example }.into());
+        }
         let ending = path.extension().and_then(|ending| ending.to_str());
         let ending = ending.map(str::to_ascii_lowercase);
         let by_ending = match ending.as_deref() {
@@ -187,6 +191,12 @@ impl fmt::Display for Output {
             }
         }
     }
+}
+
+/// Whether a path is meant as a folder's: one that is there, and a name with a slash at its end.
+fn is_folder(path: &Path) -> bool {
+    let ends_in_slash = path.to_string_lossy().ends_with(std::path::is_separator);
+    ends_in_slash || (path.extension().is_none() && path.is_dir())
 }
 
 fn not_onto(path: &Path, input: &Path, what: &'static str) -> Result<(), Misuse> {
