@@ -32,9 +32,7 @@ pub fn write_whole(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
 ) -> io::Result<()> {
-    let name = path.file_name().map(label).unwrap_or_default();
-    remove_leftovers(folder_of(path), |left| left == name.as_encoded_bytes());
-    let mut unfinished = Unfinished::new(path)?;
+    let mut unfinished = Unfinished::after_leftovers(path)?;
     {
         let mut writer = BufWriter::new(unfinished.file());
         fill(&mut writer)?;
@@ -57,6 +55,16 @@ pub struct Unfinished {
 }
 
 impl Unfinished {
+    /// [Begins](Self::new) the file that is to be at `path`, after what killed processes left of it is removed.
+    ///
+    /// # Errors
+    /// Those of [`Self::new`].
+    pub fn after_leftovers(path: &Path) -> io::Result<Self> {
+        let name = path.file_name().map(label).unwrap_or_default();
+        remove_leftovers(folder_of(path), |left| left == name.as_encoded_bytes());
+        Self::new(path)
+    }
+
     /// Begins the file that is to be at `path`.
     ///
     /// # Errors
@@ -110,7 +118,7 @@ impl Unfinished {
 
 /// Removes what killed processes left unfinished in a folder: those files whose [`label`] is asked for, and none that
 /// a live process is writing.
-pub fn remove_leftovers(folder: &Path, asked: impl Fn(&[u8]) -> bool) {
+fn remove_leftovers(folder: &Path, asked: impl Fn(&[u8]) -> bool) {
     let Ok(entries) = fs::read_dir(folder) else {
         return;
     };
@@ -144,7 +152,7 @@ pub fn remove_if_dead(path: &Path) {
 }
 
 /// What an unfinished file is called after: its name, or for a long one its checksum.
-pub fn label(name: &OsStr) -> OsString {
+fn label(name: &OsStr) -> OsString {
     if name.len() > LONGEST_NAME {
         format!("{:08x}", crc32fast::hash(name.as_encoded_bytes())).into()
     } else {

@@ -5,12 +5,12 @@
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use super::super::StdoutError;
 use super::super::picture::stdout;
-use crate::output::{Unfinished, label, remove_leftovers};
+use crate::output::Unfinished;
 use crate::scene::ImageSize;
 use crate::scene::animation::Rate;
 
@@ -45,9 +45,7 @@ struct Turn {
     sink: Sink,
     /// The place of the frame that comes next.
     next: u64,
-    /// Whether something went wrong: no frame comes any more.
-    broken: bool,
-    /// What did.
+    /// What went wrong: no frame comes any more.
     failure: Option<anyhow::Error>,
 }
 
@@ -91,7 +89,6 @@ impl Film {
             turn: Mutex::new(Turn {
                 sink: open(place).map_err(|error| unwritable(place, error))?,
                 next: 0,
-                broken: false,
                 failure: None,
             }),
             next: Condvar::new(),
@@ -114,10 +111,10 @@ impl Film {
     /// [`Broken`], if this or a frame before failed.
     pub(super) fn write(&self, place: u64, frame: anyhow::Result<&[u8]>) -> Result<(), Broken> {
         let mut turn = self.turn();
-        while turn.next != place && !turn.broken {
+        while turn.next != place && turn.failure.is_none() {
             turn = self.next.wait(turn).unwrap_or_else(PoisonError::into_inner);
         }
-        if turn.broken {
+        if turn.failure.is_some() {
             return Err(Broken);
         }
         let written = frame.and_then(|pixels| {
@@ -133,9 +130,8 @@ impl Film {
         });
         turn.next += 1;
         turn.failure = written.err();
-        turn.broken = turn.failure.is_some();
         self.next.notify_all();
-        if turn.broken { Err(Broken) } else { Ok(()) }
+        turn.failure.as_ref().map_or(Ok(()), |_| Err(Broken))
     }
 
     /// Ends a film that has all its frames.
@@ -176,15 +172,7 @@ fn open(place: &Place) -> io::Result<Sink> {
     match place {
         Place::Stdout => stdout().map(Sink::Open),
         Place::Device(path) => OpenOptions::new().write(true).open(path).map(Sink::Open),
-        Place::File(path) => {
-            let name = path.file_name().map(label).unwrap_or_default();
-            let folder = match path.parent() {
-                Some(folder) if !folder.as_os_str().is_empty() => folder,
-                _ => Path::new("."),
-            };
-            remove_leftovers(folder, |left| left == name.as_encoded_bytes());
-            Unfinished::new(path).map(Sink::Unfinished)
-        }
+        Place::File(path) => Unfinished::after_leftovers(path).map(Sink::Unfinished),
     }
 }
 
