@@ -6,7 +6,7 @@ mod interleaved;
 
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
-use darkness::render::batch::{self, Curved, Drawn};
+use darkness::render::batch::{self, Curved, Drawn, Sharing};
 use darkness::render::{coverage, mask};
 use darkness::scene::animation::FrameRange;
 use darkness::scene::{Animation, Scene, View, builtins};
@@ -101,7 +101,13 @@ fn main() {
                         std::hint::black_box(frame);
                     })
                 };
-                let drawn = batch::draw(frames, (all.iter(), all.count()), |_| true, done);
+                let drawn = batch::draw(
+                    frames,
+                    all.iter(),
+                    Sharing::fastest(all.count(), u64::MAX),
+                    |_| true,
+                    done,
+                );
                 drawn.map_or(0.0, |()| f64::from(FRAMES))
             };
             compare(

@@ -7,7 +7,7 @@ use std::alloc::System;
 
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
-use darkness::render::batch::{self, Curved, Drawn};
+use darkness::render::batch::{self, Curved, Drawn, Sharing};
 use darkness::render::{coverage, mask};
 use darkness::scene::animation::FrameRange;
 use darkness::scene::{Animation, Scene, View};
@@ -68,8 +68,8 @@ fn frames_take_no_memory_once_warm() {
         let draw = |frames: FrameRange| {
             let curved = Curved::new(&orbit, &Exact);
             let done = |drawn: Drawn<'_>| drawn.pixels.map(|_| ());
-            let numbers = (frames.iter(), frames.count());
-            batch::draw(&curved, numbers, |_| true, done).unwrap();
+            let sharing = Sharing::fastest(frames.count(), u64::MAX);
+            batch::draw(&curved, frames.iter(), sharing, |_| true, done).unwrap();
         };
         draw(FrameRange::up_to(20));
         let (some, all) = (

@@ -6,7 +6,7 @@ use std::sync::Mutex;
 
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
-use darkness::render::batch::{self, Curved, Drawn, FrameError, Frames, RayByRay};
+use darkness::render::batch::{self, Curved, Drawn, FrameError, Frames, RayByRay, Sharing};
 use darkness::render::{coverage, mask, pixelwise};
 use darkness::scene::animation::FrameRange;
 use darkness::scene::{Animation, Scene, View};
@@ -25,6 +25,10 @@ fn animation(name: &str, frames: u32) -> Animation {
         .unwrap()
 }
 
+fn fastest(range: &FrameRange) -> Sharing {
+    Sharing::fastest(range.count(), u64::MAX)
+}
+
 /// The frames of a range, drawn on so many threads.
 fn drawn(frames: &impl Frames, range: &str, threads: usize) -> BTreeMap<u32, Vec<u8>> {
     let range: FrameRange = range.parse().unwrap();
@@ -39,7 +43,7 @@ fn drawn(frames: &impl Frames, range: &str, threads: usize) -> BTreeMap<u32, Vec
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.unwrap()
-        .install(|| batch::draw(frames, (range.iter(), range.count()), |_| true, done))
+        .install(|| batch::draw(frames, range.iter(), fastest(&range), |_| true, done))
         .unwrap();
     let mut places = places.into_inner().unwrap();
     places.sort_unstable();
@@ -157,7 +161,7 @@ fn a_failure_ends_the_batch_if_it_is_told_to() {
             }
         };
         let range = FrameRange::up_to(401);
-        let run = || batch::draw(&frames, (range.iter(), range.count()), |_| true, done);
+        let run = || batch::draw(&frames, range.iter(), fastest(&range), |_| true, done);
         let ended = pool.install(run);
         assert_eq!(ended.is_err(), stop);
         if stop {
@@ -182,7 +186,8 @@ fn frames_that_are_not_wanted_are_passed_over() {
     let range = FrameRange::up_to(40);
     batch::draw(
         &Curved::new(&orbit, &Exact),
-        (range.iter(), range.count()),
+        range.iter(),
+        fastest(&range),
         |number| number % 10 == 3,
         done,
     )

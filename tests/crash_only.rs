@@ -251,31 +251,6 @@ fn pipes_and_devices_in_the_place_of_frames_are_failures_of_these_frames() {
     done(here, &["render", "small.toml", "-o", PATTERN, "--dry-run"]);
 }
 
-/// Guards against a quota that ends the process: the signal of a file that grows too large.
-#[test]
-fn a_quota_is_an_error_and_leaves_nothing_half() {
-    let folder = with_animation(20);
-    let here = folder.path();
-    let limited = |args: &str| {
-        let program = cargo_bin!("darkness").display().to_string();
-        let line = format!("ulimit -f 1; exec '{program}' {args}");
-        let output = Command::new("sh")
-            .current_dir(here)
-            .args(["-c", &line])
-            .output();
-        let output = output.unwrap();
-        let stderr = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(1), "{args}: {stderr}");
-        assert!(stderr.contains("cannot be written"), "{stderr}");
-    };
-    limited("render small.toml -o film.y4m");
-    limited("render small.toml -o 'f_##.png' --size 960x540");
-    limited("table draft -o b.table");
-    limited("render classic --table tables/draft.table -o c.png");
-    let left: Vec<_> = files(here).into_keys().collect();
-    assert_eq!(left, ["small.toml", "tables"]);
-}
-
 /// The program, drawing frames in the background.
 fn start(folder: &Path, out: &str) -> Child {
     darkness(
@@ -397,42 +372,4 @@ fn a_signal_that_is_ignored_from_the_start_is_ignored() {
         fs::metadata(here.join("film.raw")).unwrap().len(),
         300 * 96 * 54
     );
-}
-
-/// Guards against memory that grows with the frames.
-#[test]
-#[cfg(target_os = "linux")]
-fn memory_is_the_same_for_many_frames_as_for_few() {
-    let folder = with_animation(4000);
-    let most = |frames: &str| {
-        let args = [
-            "render",
-            "small.toml",
-            "--frames",
-            frames,
-            "-o",
-            "/dev/null",
-            "--format",
-            "raw",
-            "--threads",
-            "2",
-        ];
-        let mut child = darkness(folder.path(), &args)
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        let status = format!("/proc/{}/status", child.id());
-        let mut most = 0;
-        while child.try_wait().unwrap().is_none() {
-            let text = fs::read_to_string(&status).unwrap_or_default();
-            let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-            let kib = line.and_then(|line| line.split_whitespace().next()?.parse::<u64>().ok());
-            most = most.max(kib.unwrap_or(0));
-            std::thread::sleep(Duration::from_millis(2));
-        }
-        most
-    };
-    let (few, many) = (most("1-400"), most("1-4000"));
-    println!("{few} KiB for 400 frames, {many} KiB for 4,000");
-    assert!(few > 0 && many < few + 2048, "{few} KiB, {many} KiB");
 }

@@ -6,6 +6,8 @@
 
 #[path = "common/animated.rs"]
 mod animated;
+#[path = "common/tools.rs"]
+mod tools;
 
 use std::env;
 use std::ffi::OsString;
@@ -20,20 +22,7 @@ use tempfile::tempdir;
 
 /// Whether the tools are there.
 fn has(tools: &[&str]) -> bool {
-    let missing = tools.iter().find(|tool| {
-        let found = Command::new("sh")
-            .args(["-c", &format!("command -v {tool}")])
-            .env("PATH", path())
-            .output();
-        !found.is_ok_and(|found| found.status.success())
-    });
-    if let Some(tool) = missing {
-        let needed = env::var("DARKNESS_TOOLS").unwrap_or_default();
-        let is_needed = needed.split_whitespace().any(|needed| needed == *tool);
-        assert!(!is_needed, "{tool} is not installed");
-        eprintln!("{tool} is not installed: passed over");
-    }
-    missing.is_none()
+    tools.iter().all(|tool| tools::has(tool))
 }
 
 /// Where programs are looked for: the one that is tested before all others.

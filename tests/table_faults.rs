@@ -183,6 +183,47 @@ fn a_disk_that_fills_up_after_any_byte_leaves_the_old_table_and_nothing_else() {
     assert!(is_there(&path));
 }
 
+/// Guards against a wait for the other end of a pipe, and for the end of what has none.
+#[test]
+fn what_is_no_file_of_a_table_is_refused_at_once() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    let made = Command::new("mkfifo").arg(here.join("pipe")).status();
+    assert!(made.unwrap().success());
+    fs::create_dir(here.join("folder")).unwrap();
+    fs::write(here.join("empty"), "").unwrap();
+    fs::write(here.join("text"), "[camera]\nfov = 40\n").unwrap();
+    let picture = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/reference/masks/face-on.png"
+    );
+    std::os::unix::fs::symlink(picture, here.join("picture")).unwrap();
+    let _socket = std::os::unix::net::UnixListener::bind(here.join("socket")).unwrap();
+    for (name, kind) in [
+        ("pipe", "a pipe, a socket or a device"),
+        ("socket", "a pipe, a socket or a device"),
+        ("/dev/zero", "a pipe, a socket or a device"),
+        ("/dev/null", "a pipe, a socket or a device"),
+        ("folder", "a folder"),
+        ("empty", "first eight bytes"),
+        ("text", "first eight bytes"),
+        ("picture", "first eight bytes"),
+    ] {
+        let names = || fs::read_dir(here).unwrap().count();
+        let before = names();
+        for args in [
+            &["table", "inspect", name][..],
+            &["table", "verify", name],
+            &["render", "--table", name, "-o", "x.png"],
+            &["render", "--table", name, "-o", "x.png", "--no-mmap"],
+            &["trace", "--table", name, "text"],
+        ] {
+            refused(here, args, 1, &[name, "not a darkness table", kind]);
+        }
+        assert_eq!(names(), before, "{name}");
+    }
+}
+
 /// Guards against a length that is believed: what is mapped is as long as its first bytes say.
 #[test]
 fn a_file_of_another_length_is_refused_before_it_is_mapped() {

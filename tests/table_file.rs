@@ -239,6 +239,24 @@ fn other_versions_are_named() {
     }
 }
 
+/// What a machine of the other byte order, or a tool that swaps words, makes of a table.
+#[test]
+fn swapped_bytes_are_called_so() {
+    let table = draft();
+    for width in [2, 4, 8] {
+        let words = table.bytes().chunks(width);
+        let swapped: Vec<u8> = words.flat_map(|word| word.iter().rev().copied()).collect();
+        let found = problem_anywhere(&swapped);
+        assert_eq!(found, FormatError::Swapped, "by {width}");
+        assert!(
+            found
+                .to_string()
+                .contains(&format!("reads format {VERSION}")),
+            "{found}"
+        );
+    }
+}
+
 #[test]
 fn misaligned_bytes_are_not_read_in_place() {
     let table = draft();
@@ -255,7 +273,7 @@ type Change = fn(&mut Metadata);
 /// Metadata that nobody's `generate` writes, under checksums that fit.
 #[test]
 fn senseless_metadata_is_refused() {
-    let changes: [(&str, Change); 11] = [
+    let changes: [(&str, Change); 15] = [
         ("tolerance NaN", |m| m.spec.tolerance = f64::NAN),
         ("tolerance 0", |m| m.spec.tolerance = 0.0),
         ("tolerance < 0", |m| m.spec.tolerance = -1e-6),
@@ -267,6 +285,12 @@ fn senseless_metadata_is_refused() {
         ("too few nodes", |m| m.spec.critical.orbit = 5),
         ("another grid", |m| m.spec.weak.place += 1),
         ("no nodes", |m| m.spec.radial.orbit = 0),
+        ("as many nodes as there are numbers", |m| {
+            m.spec.radial.orbit = u32::MAX
+        }),
+        ("no name", |m| m.spec.name.clear()),
+        ("a name of many lines", |m| m.spec.name.push('\n')),
+        ("a name that terminals obey", |m| m.spec.name.push('\u{1b}')),
     ];
     let mut accepted = Vec::new();
     for (name, change) in changes {
@@ -495,7 +519,7 @@ fn a_file_that_cannot_be_opened_is_named_with_the_command_that_mends_it() {
     }
 
     let (text, error) = message(folder.path());
-    assert!(matches!(error, TableError::Unreadable { .. }), "{error:?}");
+    assert!(matches!(error, TableError::Unusable { .. }), "{error:?}");
     assert!(
         text.contains(&folder.path().display().to_string()),
         "{text}"

@@ -10,7 +10,6 @@ mod job;
 mod method;
 mod picture;
 mod progress;
-mod rays_csv;
 mod render;
 mod scene;
 mod table;
@@ -21,6 +20,7 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use bytesize::ByteSize;
 use clap::{Args, Parser, Subcommand};
 use interrupt::Interrupted;
 use progress::{Report, warn};
@@ -129,6 +129,15 @@ enum Misuse {
         width: u32,
         height: u32,
         source: crate::scene::SceneError,
+    },
+    #[error(
+        "{width} × {height} pixels take about {needed} of memory, and {allowed} are allowed: ask for a smaller picture with --size, or allow more with --max-memory"
+    )]
+    Memory {
+        width: u32,
+        height: u32,
+        needed: ByteSize,
+        allowed: ByteSize,
     },
     #[error(
         "DARKNESS_SIMD is `{name}`: the instruction sets that it may name are {}; set it to one of these, or not at all",

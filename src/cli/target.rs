@@ -4,6 +4,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use bytesize::ByteSize;
+
 /// The option that names where things go, in every verb.
 pub(super) const OUTPUT: &str = "-o";
 
@@ -26,7 +28,7 @@ pub(super) enum TargetError {
     IsAFolder { path: PathBuf, option: &'static str },
     #[error("{} is no regular file, and would be replaced by one; choose another place with {option}", path.display())]
     Special { path: PathBuf, option: &'static str },
-    #[error("{}: about {} are needed there, and {} are free: make room, choose another place with -o, or fewer frames with --frames", folder.display(), size(*bytes), size(*room))]
+    #[error("{}: about {} are needed there, and {} are free: make room, choose another place with -o, or fewer frames with --frames", folder.display(), ByteSize(*bytes).display().si(), ByteSize(*room).display().si())]
     NoRoom {
         folder: PathBuf,
         bytes: u64,
@@ -39,18 +41,6 @@ pub(super) enum TargetError {
         option: &'static str,
         source: io::Error,
     },
-}
-
-/// A number of bytes in a unit that suits it.
-fn size(bytes: u64) -> String {
-    let units = ["bytes", "kB", "MB", "GB", "TB", "PB"];
-    let mut value = bytes as f64;
-    let mut unit = 0;
-    while value >= 1000.0 && unit + 1 < units.len() {
-        value /= 1000.0;
-        unit += 1;
-    }
-    format!("{value:.*} {}", usize::from(unit > 0), units[unit])
 }
 
 /// Checks that `path`, which `option` names, can be written, in a folder that exists.

@@ -8,8 +8,8 @@ use clap::Args;
 
 use super::method::{DEFAULT_TABLE, Method, MethodArgs};
 use super::progress::{Report, warn};
-use super::rays_csv::Rays;
 use super::{Misuse, StdoutError, start_threads};
+use crate::orbit::csv::Rays;
 use crate::orbit::exact::Exact;
 use crate::orbit::{EventKind, Fate, MIN_U, OrbitError, Orbits, Ray};
 

@@ -9,6 +9,7 @@
 //! [table](crate::table).
 
 pub mod carlson;
+pub mod csv;
 pub mod exact;
 pub mod integrate;
 pub mod invariants;

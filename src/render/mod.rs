@@ -52,7 +52,7 @@ pub enum RenderError {
         /// Rows.
         height: u32,
         /// What they take.
-        bytes: usize,
+        bytes: u64,
     },
     /// The frame does not fit the buffer it is to be drawn into.
     #[error(
@@ -100,15 +100,15 @@ fn blank(view: &View) -> Result<Vec<u8>, RenderError> {
 /// Makes room for a frame: what was there may stay.
 fn blank_into(view: &View, pixels: &mut Vec<u8>) -> Result<(), RenderError> {
     let (width, height) = (view.width(), view.height());
-    let bytes = width as usize * height as usize;
-    let more = bytes.saturating_sub(pixels.len());
-    pixels
-        .try_reserve_exact(more)
-        .map_err(|_| RenderError::Memory {
-            width,
-            height,
-            bytes,
-        })?;
-    pixels.resize(bytes, 0);
+    let bytes = u64::from(width) * u64::from(height);
+    let memory = || RenderError::Memory {
+        width,
+        height,
+        bytes,
+    };
+    let length = usize::try_from(bytes).map_err(|_| memory())?;
+    let more = length.saturating_sub(pixels.len());
+    pixels.try_reserve_exact(more).map_err(|_| memory())?;
+    pixels.resize(length, 0);
     Ok(())
 }

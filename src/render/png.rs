@@ -83,13 +83,14 @@ fn chunk(bytes: &[u8]) -> Option<(&[u8; 4], &[u8], &[u8])> {
 /// the pixel is 128 or more.
 ///
 /// # Errors
-/// Where the number of pixels is not `width` × `height`.
+/// Where the number of pixels is not `width` × `height`, or they take more memory to encode than there is.
 pub fn encode(
     pixels: &[u8],
     (width, height): (u32, u32),
     one_bit: bool,
     origin: &Origin,
 ) -> io::Result<Vec<u8>> {
+    check_memory(pixels.len())?;
     let mut bytes = Vec::new();
     let mut encoder = Encoder::new(&mut bytes, width, height);
     encoder.set_color(ColorType::Grayscale);
@@ -112,6 +113,17 @@ pub fn encode(
         writer.finish()?;
     }
     Ok(bytes)
+}
+
+/// Asks for the memory that so many pixels take to encode, and gives it back: where the encoder is refused any, the process ends.
+fn check_memory(pixels: usize) -> io::Result<()> {
+    // Frames with hard edges take an eighth packed and as much encoded, smooth ones a tenth encoded, twice.
+    let mut room = Vec::<u8>::new();
+    room.try_reserve_exact(pixels / 2).map_err(|_| {
+        let problem =
+            format!("there is not the memory to encode {pixels} pixels: ask for a smaller picture");
+        io::Error::new(io::ErrorKind::OutOfMemory, problem)
+    })
 }
 
 /// Eight pixels a byte, the first the highest bit; each row begins with a byte of its own.

@@ -5,9 +5,22 @@ use std::path::PathBuf;
 use super::animation::MAX_FRAMES;
 use super::builtin::builtins;
 use super::validate::{
-    FARTHEST_CAMERA, ISCO_RADIUS, MAX_IMAGE_SIDE, MAX_PIXELS, MAX_TOLERANCE, NARROWEST_FOV,
-    WIDEST_DISK,
+    FARTHEST_CAMERA, ISCO_RADIUS, MAX_IMAGE_SIDE, MAX_TOLERANCE, NARROWEST_FOV, WIDEST_DISK,
 };
+
+/// Somebody's line as a message repeats it: the beginning of a very long one, and nothing that a terminal obeys.
+pub(super) fn repeated(line: &str, longest: usize) -> String {
+    let shown = |c: char| match c {
+        '\t' => ' ',
+        c if c.is_control() => char::REPLACEMENT_CHARACTER,
+        c => c,
+    };
+    let mut text: String = line.chars().take(longest).map(shown).collect();
+    if line.chars().nth(longest).is_some() {
+        text.push('…');
+    }
+    text
+}
 
 /// Why a scene is refused: what is wrong, what is allowed, and why.
 #[derive(Debug, thiserror::Error)]
@@ -217,17 +230,6 @@ pub enum SceneError {
         key: &'static str,
         /// The number of pixels.
         value: i64,
-    },
-    /// The picture has too many pixels.
-    #[error(
-        "image.width = {width} by image.height = {height} is {pixels} pixels: at most {MAX_PIXELS} are allowed, since the picture is held in memory",
-        pixels = i64::from(*width) * i64::from(*height)
-    )]
-    ImagePixels {
-        /// Pixels in a row.
-        width: u32,
-        /// Rows.
-        height: u32,
     },
     /// The edges' tolerance is not allowed.
     #[error(

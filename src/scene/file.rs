@@ -6,6 +6,7 @@ use serde::de::{Error as _, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use super::animation::Interpolation;
+use super::error::repeated;
 use super::{DEFAULT_TOLERANCE, Scene, SceneError};
 
 /// The whole file.
@@ -220,15 +221,10 @@ impl SceneFile {
     }
 }
 
-/// A message without the rest of very long lines, which it quotes.
+/// A message fit to be printed: it quotes the file.
 fn shortened(message: &str) -> String {
     const LONGEST: usize = 200;
-    let lines = message
-        .lines()
-        .map(|line| match line.char_indices().nth(LONGEST) {
-            Some((end, _)) => format!("{} …", &line[..end]),
-            None => line.to_owned(),
-        });
+    let lines = message.lines().map(|line| repeated(line, LONGEST));
     lines.collect::<Vec<_>>().join("\n")
 }
 

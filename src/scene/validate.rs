@@ -30,9 +30,6 @@ pub const MAX_IMAGE_SIDE: i64 = 1_000_000;
 /// The most that an edge may be off by, in pixels: with more than one, rings as thick as a pixel are left out.
 pub const MAX_TOLERANCE: f64 = 1.0;
 
-/// The most pixels of a picture, 2³¹.
-pub const MAX_PIXELS: i64 = 1 << 31;
-
 /// A camera is in the disk's plane where |n·p̂| is no more than this: the cosine of the given components is rounded
 /// by less (three products, two sums, a product of two lengths and a quotient, each by at most ε/2 of a term below
 /// 1).
@@ -120,26 +117,19 @@ pub(super) fn tolerance(pixels: f64) -> Result<f64, SceneError> {
     }
 }
 
-/// The picture's size, each side between 1 and [`MAX_IMAGE_SIDE`], at most [`MAX_PIXELS`] in all.
+/// The picture's size, each side between 1 and [`MAX_IMAGE_SIDE`].
 ///
 /// # Errors
-/// [`SceneError::ImageSide`], [`SceneError::ImagePixels`].
+/// [`SceneError::ImageSide`]
 pub(super) fn image_size(width: i64, height: i64) -> Result<ImageSize, SceneError> {
     let side = |key, value| match u32::try_from(value) {
         Ok(pixels) if (1..=MAX_IMAGE_SIDE).contains(&value) => Ok(pixels),
         _ => Err(SceneError::ImageSide { key, value }),
     };
-    let size = ImageSize {
+    Ok(ImageSize {
         width: side("image.width", width)?,
         height: side("image.height", height)?,
-    };
-    if width * height > MAX_PIXELS {
-        return Err(SceneError::ImagePixels {
-            width: size.width,
-            height: size.height,
-        });
-    }
-    Ok(size)
+    })
 }
 
 /// A radius where a camera can stand.
@@ -404,11 +394,7 @@ mod tests {
                 refused(&[(key, value)], &[full, value, "1000000"]);
             }
         }
-        refused(
-            &[("width", "65536"), ("height", "32769")],
-            &["image.width", "image.height", "2147483648"],
-        );
-        assert!(changed(&[("width", "65536"), ("height", "32768")]).is_ok());
+        assert!(changed(&[("width", "1000000"), ("height", "1000000")]).is_ok());
     }
 
     #[test]

@@ -68,7 +68,9 @@ fn remedy(path: &Path, force: bool) -> String {
 /// unless it lies where a table is to be.
 fn mend(path: &Path, problem: &FormatError) -> String {
     let kept = Spec::NAMES.iter().any(|name| default_path(name) == path);
-    if *problem == FormatError::Foreign && !kept {
+    if matches!(problem, FormatError::NoFile { .. }) {
+        "Name a table's file".into()
+    } else if *problem == FormatError::Foreign && !kept {
         format!(
             "Name another file, or let a table take the place of this one with `{}`",
             remedy(path, true)
@@ -126,9 +128,14 @@ pub fn read(path: &Path) -> Result<Table<Memory>, TableError> {
 fn sized(path: &Path) -> Result<(File, usize), TableError> {
     let unreadable = |error| unreadable(path, error);
     // Asked before it is opened: to open a pipe is to wait for its other end.
-    if !std::fs::metadata(path).map_err(unreadable)?.is_file() {
-        let source = io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file");
-        return Err(unreadable(source));
+    let kind = std::fs::metadata(path).map_err(unreadable)?;
+    if !kind.is_file() {
+        let kind = if kind.is_dir() {
+            "folder"
+        } else {
+            "pipe, a socket or a device"
+        };
+        return Err(unusable(path, FormatError::NoFile { kind }));
     }
     let mut file = File::open(path).map_err(unreadable)?;
     let length = file.metadata().map_err(unreadable)?.len();

@@ -74,6 +74,17 @@ pub enum FormatError {
     /// Some other file.
     #[error("it is not a darkness table: it does not begin with a table's first eight bytes")]
     Foreign,
+    /// No regular file: nothing that has a length and stays what it is.
+    #[error("it is not a darkness table: a table is a regular file, and this is a {kind}")]
+    NoFile {
+        /// What it is.
+        kind: &'static str,
+    },
+    /// A table whose bytes were swapped in twos, fours or eights.
+    #[error(
+        "it is a table with its bytes in another order, and this version of darkness reads format {VERSION}, little-endian as it was written: copy it byte by byte"
+    )]
+    Swapped,
     /// A table of another version of the program.
     #[error("it is a table of format {found}, and this version of darkness reads format {VERSION}")]
     Outdated {
@@ -153,7 +164,15 @@ fn u64_at(bytes: &[u8], at: usize) -> u64 {
 pub(crate) fn layout(start: &[u8], actual: u64) -> Result<(usize, usize), FormatError> {
     let seen = start.len().min(MAGIC.len());
     if start[..seen] != MAGIC[..seen] || start.is_empty() {
-        return Err(FormatError::Foreign);
+        let swapped = |width: usize| {
+            let eights = MAGIC.chunks(width).flat_map(|word| word.iter().rev());
+            eights.eq(&start[..seen])
+        };
+        return Err(if [2, 4, 8].into_iter().any(swapped) {
+            FormatError::Swapped
+        } else {
+            FormatError::Foreign
+        });
     }
     if start.len() < METADATA_AT {
         return Err(FormatError::Length {

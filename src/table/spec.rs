@@ -10,7 +10,7 @@ use super::spline::Axis;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Spec {
-    /// `draft`, `standard` or `fine`.
+    /// `draft`, `standard` or `fine`, or another name of 1 to 100 bytes without control characters.
     pub name: String,
     /// The largest error of a swept angle that the table promises, in radians, beyond what rounding of the ray's
     /// start does.
@@ -148,7 +148,8 @@ impl Spec {
             .sum::<usize>()
     }
 
-    /// Whether every axis has as many nodes as a spline needs, and no more than a table may have.
+    /// Whether every axis has as many nodes as a spline needs, and no more than a table may have; and whether its name is one
+    /// that can be told.
     pub(crate) fn is_sound(&self) -> bool {
         let allowed = Axis::FEWEST..=Self::MOST;
         [self.critical, self.weak, self.trapped, self.radial]
@@ -156,7 +157,13 @@ impl Spec {
             .all(|n| allowed.contains(&n.place) && allowed.contains(&n.orbit))
             && self.tolerance > 0.0
             && self.tolerance.is_finite()
+            && !self.name.is_empty()
+            && self.name.len() <= Self::LONGEST_NAME
+            && !self.name.contains(char::is_control)
     }
+
+    /// The longest name, in bytes.
+    const LONGEST_NAME: usize = 100;
 
     /// The most nodes an axis may have: the sizes of a table of them still fit any counter.
     const MOST: u32 = 4096;

@@ -2,6 +2,7 @@
 
 mod explain;
 mod film;
+mod memory;
 mod output;
 pub(super) mod pattern;
 mod plan;
@@ -13,8 +14,10 @@ mod told;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
+use bytesize::ByteSize;
 use clap::Args;
 use explain::explain;
+use memory::Limit;
 use output::FormatName;
 use plan::Plan;
 
@@ -23,7 +26,7 @@ use super::progress::{ProgressKind, Report};
 use super::{Misuse, StdoutError, Threads, start_threads};
 use crate::render::needs::Needs;
 use crate::scene::animation::FrameRange;
-use crate::scene::{Animation, DEFAULT_SCENE, View};
+use crate::scene::{Animation, DEFAULT_SCENE, ImageSize, View};
 
 /// Render a scene as a PNG picture, or its animation as numbered PNG pictures or a film
 ///
@@ -80,6 +83,9 @@ pub(super) struct RenderArgs {
     /// Make no table where it is missing, but fail: for one of many workers
     #[arg(long)]
     require_table: bool,
+    /// The most memory that frames may take, such as 16GiB: two bytes for each pixel, of as many frames as are drawn side by side
+    #[arg(long, value_name = "SIZE", default_value = memory::DEFAULT, value_parser = memory::size)]
+    max_memory: ByteSize,
     #[command(flatten)]
     method: MethodArgs,
     #[command(flatten)]
@@ -133,7 +139,9 @@ fn animation(args: &RenderArgs) -> anyhow::Result<Animation> {
         return Err(Misuse::TableUnused.into());
     }
     let mut animation = Animation::load(&args.scene)?;
+    let memory = Limit(args.max_memory);
     if let Some((width, height)) = args.size {
+        memory.check(ImageSize { width, height })?;
         let sized = animation.with_size(width, height);
         animation = sized.map_err(|source| Misuse::Size {
             width,
@@ -149,6 +157,7 @@ fn animation(args: &RenderArgs) -> anyhow::Result<Animation> {
             .with_tolerance(pixels)
             .map_err(Misuse::Tolerance)?;
     }
+    memory.check(animation.image())?;
     Ok(animation)
 }
 

@@ -8,12 +8,13 @@ use super::super::method::Method;
 use super::super::picture::Destination;
 use super::super::progress::{FrameProgress, ProgressKind, Report, duration, warn};
 use super::film::{Broken, Film};
+use super::memory::Limit;
 use super::output::Output;
 use super::pattern::Pattern;
 use super::plan::{Plan, origin_of};
 use super::sequence;
 use super::tally::Tally;
-use crate::render::batch::{self, Drawn, Effort, Frames};
+use crate::render::batch::{self, Drawn, Effort, Frames, Sharing};
 use crate::render::png::Origin;
 
 /// Draws the frames of a plan.
@@ -67,10 +68,15 @@ struct Run<'a> {
 
 impl Run<'_> {
     /// The numbers of the frames, until the run is asked to end.
-    fn numbers(&self) -> (impl Iterator<Item = u32> + Send + '_, u64) {
+    fn numbers(&self) -> impl Iterator<Item = u32> + Send + '_ {
         let numbers = self.plan.frames.iter();
-        let numbers = numbers.take_while(|_| !self.interrupt.is_asked());
-        (numbers, self.plan.count)
+        numbers.take_while(|_| !self.interrupt.is_asked())
+    }
+
+    /// How the threads share frames out.
+    fn sharing(&self) -> Sharing {
+        let limit = Limit(self.plan.args.max_memory);
+        limit.sharing(self.plan.first.image(), self.plan.count)
     }
 
     fn origin(&self, number: u32) -> Origin {
@@ -85,6 +91,7 @@ impl Run<'_> {
         batch::draw(
             frames,
             self.numbers(),
+            Sharing::OneByOne,
             |_| true,
             |drawn| {
                 let Drawn { number, pixels, .. } = drawn;
@@ -121,7 +128,7 @@ impl Run<'_> {
             }
             Ok::<(), Infallible>(())
         };
-        let Ok(()) = batch::draw(frames, self.numbers(), wanted, done);
+        let Ok(()) = batch::draw(frames, self.numbers(), self.sharing(), wanted, done);
     }
 
     fn write_frame(&self, drawn: Drawn<'_>, pattern: &Pattern) -> anyhow::Result<()> {
@@ -150,7 +157,7 @@ impl Run<'_> {
             self.done(number, effort, (Duration::ZERO, start.elapsed()));
             Ok::<(), Broken>(())
         };
-        let drawn = batch::draw(frames, self.numbers(), |_| true, done);
+        let drawn = batch::draw(frames, self.numbers(), self.sharing(), |_| true, done);
         if drawn.is_ok() && self.tally.count_drawn() < self.plan.count {
             // The run was asked to end: what is not whole is not kept.
             return Ok(());

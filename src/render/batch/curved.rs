@@ -69,6 +69,8 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
         let error = curves.error();
         let unresolved = is_unresolved(error, scene.tolerance());
         if unresolved {
+            // Two frames are not held at a time.
+            *pixels = Vec::new();
             *pixels = pixelwise::render(&scene, &view, self.angles, &|| ())?;
         } else {
             let render_on = if scene.antialias() {

@@ -18,9 +18,30 @@ use crate::scene::SceneError;
 pub use curved::Curved;
 pub use ray_by_ray::RayByRay;
 
-/// As many frames as there are threads, times this, are drawn side by side, each on one thread; fewer one after the
-/// other, each on all threads. The last frames of a few would leave threads without work.
-const SIDE_BY_SIDE: u64 = 4;
+/// How the threads of the current rayon pool share frames out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sharing {
+    /// A frame on each thread.
+    SideBySide,
+    /// One frame after the other, each on all threads.
+    OneByOne,
+}
+
+impl Sharing {
+    /// As many frames as there are threads, times this, are drawn side by side: the last frames of fewer would leave threads
+    /// without work.
+    const MANY: u64 = 4;
+
+    /// What is fastest for `count` frames, of which at most so many can be held at a time.
+    pub fn fastest(count: u64, at_a_time: u64) -> Self {
+        let threads = rayon::current_num_threads() as u64;
+        if count >= Self::MANY * threads && threads <= at_a_time {
+            Self::SideBySide
+        } else {
+            Self::OneByOne
+        }
+    }
+}
 
 /// What draws any frame of an animation.
 pub trait Frames: Sync {
@@ -72,20 +93,21 @@ pub struct Drawn<'a> {
     pub pixels: Result<(&'a [u8], Effort), FrameError>,
 }
 
-/// Draws `count` frames on all threads of the current rayon pool. They are begun in order; each is handed to `done` when it
+/// Draws frames on all threads of the current rayon pool. They are begun in order; each is handed to `done` when it
 /// is finished, in any order and from several threads at once. Those that are not `wanted` are passed over.
 ///
-/// The memory is that of a frame for each thread.
+/// The memory is that of a frame, side by side of one for each thread.
 ///
 /// # Errors
 /// What `done` returns; no more frames are begun then.
 pub fn draw<E: Send>(
     frames: &impl Frames,
-    (numbers, count): (impl Iterator<Item = u32> + Send, u64),
+    numbers: impl Iterator<Item = u32> + Send,
+    sharing: Sharing,
     wanted: impl Fn(u32) -> bool + Sync,
     done: impl Fn(Drawn<'_>) -> Result<(), E> + Sync,
 ) -> Result<(), E> {
-    let side_by_side = count >= SIDE_BY_SIDE * rayon::current_num_threads() as u64;
+    let side_by_side = sharing == Sharing::SideBySide;
     let numbers = Mutex::new(numbers.zip(0..));
     let failed = AtomicBool::new(false);
     let worker = || {

@@ -42,7 +42,7 @@ use glam::DVec3;
 
 use super::file::{KeyframeTable, SceneFile};
 use super::vector::{cosine, norm};
-use super::{Camera, Disk, Scene, SceneError, load_text, validate};
+use super::{Camera, Disk, ImageSize, Scene, SceneError, load_text, validate};
 use direction::Directions;
 use orbit::Orbit;
 use position::{Place, Position};
@@ -181,6 +181,11 @@ impl Animation {
         self.rate
     }
 
+    /// The size of its frames.
+    pub fn image(&self) -> ImageSize {
+        self.picture.size
+    }
+
     /// Whether the scene says nothing of an animation: it has one frame then.
     pub fn is_still(&self) -> bool {
         self.file.animation.is_none()
@@ -266,7 +271,7 @@ impl Animation {
     /// The same animation as pictures of another size; the vertical field of view stays.
     ///
     /// # Errors
-    /// [`SceneError::ImageSide`] and [`SceneError::ImagePixels`] for a size that is not allowed.
+    /// [`SceneError::ImageSide`] for a size that is not allowed.
     pub fn with_size(mut self, width: u32, height: u32) -> Result<Self, SceneError> {
         (self.file.image.width, self.file.image.height) = (i64::from(width), i64::from(height));
         self.with_picture()

@@ -2,14 +2,14 @@
 
 use std::io::{self, BufRead, Read};
 
-use crate::orbit::{OrbitError, Ray};
+use super::{OrbitError, Ray};
 
 /// Rays read from CSV text with a header: an iterator of them, or of why a line holds none.
 ///
 /// Columns stand in any order, others than `u0` and `dudphi` are ignored. Fields may have spaces around them and
 /// stand in quotes. Blank lines and lines that begin with `#` are skipped.
 #[derive(Debug)]
-pub(super) struct Rays<R> {
+pub struct Rays<R> {
     input: R,
     name: String,
     line: u64,
@@ -28,49 +28,71 @@ struct Columns {
 /// What is wrong in a file of rays, and where.
 #[derive(Debug, thiserror::Error)]
 #[error("{place}: {problem}")]
-pub(super) struct RaysError {
+pub struct RaysError {
     place: String,
     problem: Problem,
 }
 
 impl RaysError {
     /// Whether no line after this one can be read.
-    pub(super) fn is_final(&self) -> bool {
+    pub fn is_final(&self) -> bool {
         matches!(self.problem, Problem::Unreadable(_) | Problem::TooLong)
     }
 }
 
 /// What is wrong with a line.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum Problem {
+pub enum Problem {
+    /// The system does not give the text.
     #[error("the rays cannot be read: {0}")]
     Unreadable(io::Error),
+    /// A line is longer than any list's.
     #[error("the line is longer than {LONGEST} bytes, so this is no list of rays")]
     TooLong,
+    /// A line is no text.
     #[error("the line is no UTF-8 text")]
     NotText,
+    /// A quote is opened and not closed.
     #[error("a quote is opened and not closed; a field ends on the line it begins on")]
     OpenQuote,
+    /// There is no line that says anything.
     #[error("there is no header: the first line names the columns, u0 and dudphi among them")]
     NoHeader,
-    #[error(
-        "the header names no column {missing}: it must name u0 and dudphi, and has {}",
-        found.join(", ")
-    )]
+    /// The header lacks a column.
+    #[error("the header names no column {missing}: it must name u0 and dudphi, and has {found}")]
     NoColumn {
+        /// The column.
         missing: &'static str,
-        found: Vec<String>,
+        /// The columns that it has, the first of very many.
+        found: String,
     },
+    /// The header names a column twice.
     #[error("the header names the column {column} twice")]
-    Ambiguous { column: &'static str },
+    Ambiguous {
+        /// The column.
+        column: &'static str,
+    },
+    /// A line has more or fewer fields than the header.
     #[error(
         "the line has {found} fields and the header {expected}: each line has one for each column"
     )]
-    Fields { expected: usize, found: usize },
+    Fields {
+        /// Fields of the header.
+        expected: usize,
+        /// Fields of the line.
+        found: usize,
+    },
+    /// A field is no number.
     #[error(
-        "{column} is {text:?}, which is no number: write 0.25 or 2.5e-1 (and inf or -inf for a dudphi straight in or out)"
+        "{column} is {text}, which is no number: write 0.25 or 2.5e-1 (and inf or -inf for a dudphi straight in or out)"
     )]
-    NoNumber { column: &'static str, text: String },
+    NoNumber {
+        /// The field's column.
+        column: &'static str,
+        /// The field, in quotes, its beginning if it is very long.
+        text: String,
+    },
+    /// The numbers are none of a ray.
     #[error("{0}")]
     Ray(#[from] OrbitError),
 }
@@ -83,7 +105,7 @@ impl<R: BufRead> Rays<R> {
     ///
     /// # Errors
     /// [`RaysError`] where the header is missing or does not name the columns.
-    pub(super) fn new(input: R, name: String) -> Result<Self, RaysError> {
+    pub fn new(input: R, name: String) -> Result<Self, RaysError> {
         let mut rays = Self {
             input,
             name,
@@ -101,7 +123,7 @@ impl<R: BufRead> Rays<R> {
     }
 
     /// `problem`, with the place of the line read last.
-    pub(super) fn error(&self, problem: Problem) -> RaysError {
+    pub fn error(&self, problem: Problem) -> RaysError {
         let place = match self.line {
             0 => self.name.clone(),
             line => format!("{}, line {line}", self.name),
@@ -204,7 +226,7 @@ fn position(header: &[&str], column: &'static str) -> Result<usize, Problem> {
         (Some(_), Some(_)) => Err(Problem::Ambiguous { column }),
         (None, _) => Err(Problem::NoColumn {
             missing: column,
-            found: header.iter().map(|&name| name.to_owned()).collect(),
+            found: listed(header),
         }),
     }
 }
@@ -212,8 +234,33 @@ fn position(header: &[&str], column: &'static str) -> Result<usize, Problem> {
 fn number(column: &'static str, text: &str) -> Result<f64, Problem> {
     text.parse().map_err(|_| Problem::NoNumber {
         column,
-        text: text.to_owned(),
+        text: quoted(text),
     })
+}
+
+/// The most of anybody's text that a message repeats, in characters and in names.
+const MOST_REPEATED: usize = 40;
+
+/// A text in quotes, fit for a message: of a very long one its beginning, and nothing that a terminal obeys.
+fn quoted(text: &str) -> String {
+    let begin: String = text.chars().take(MOST_REPEATED).collect();
+    let rest = if begin.len() < text.len() { "…" } else { "" };
+    format!("{begin:?}{rest}")
+}
+
+/// The names of columns.
+fn listed(header: &[&str]) -> String {
+    let names: Vec<String> = header
+        .iter()
+        .take(MOST_REPEATED)
+        .map(|name| quoted(name))
+        .collect();
+    let rest = if names.len() < header.len() {
+        ", …"
+    } else {
+        ""
+    };
+    names.join(", ") + rest
 }
 
 #[cfg(test)]
@@ -268,6 +315,18 @@ mod tests {
         }
         let message = read(b"").unwrap_err();
         assert!(message.starts_with("list: there is no header"), "{message}");
+    }
+
+    /// Guards against a megabyte of message, and against one that sets a terminal's colours.
+    #[test]
+    fn messages_repeat_little_of_what_they_refuse() {
+        let long = format!("u0,dudphi\n0.1,\u{1b}[31m{}\n", "x".repeat(100_000));
+        let wide = format!("\u{7},{}\n", "y,".repeat(100_000));
+        for text in [long, wide] {
+            let message = read(text.as_bytes()).unwrap_err();
+            assert!(message.len() < 500, "{} bytes", message.len());
+            assert!(!message.contains(char::is_control), "{message}");
+        }
     }
 
     #[test]

@@ -1,0 +1,256 @@
+//! What must hold of any bytes that somebody takes for a table, a scene, a range of frames or a list of rays: they are read or refused,
+//! and what is read can be worked with. Fuzzers run these on bytes of their own, tests on those that were kept.
+
+// Each program takes what it needs.
+#![allow(dead_code)]
+
+use std::collections::BTreeSet;
+use std::sync::OnceLock;
+
+use darkness::isoradial::{Isoradials, Sight};
+use darkness::orbit::csv::Rays;
+use darkness::orbit::exact::Exact;
+use darkness::orbit::path::SweptAngles;
+use darkness::orbit::{Event, EventKind, Orbits, Ray};
+use darkness::render::needs::Needs;
+use darkness::render::{coverage, mask};
+use darkness::scene::animation::FrameRange;
+use darkness::scene::{Animation, Scene, View};
+use darkness::table::format::{MAGIC, VERSION};
+use darkness::table::{FixedBytes, FormatError, Memory, Spec, Table, generate};
+
+/// Where the file's format has the preamble's fields.
+const VERSION_AT: usize = 8;
+const METADATA_LENGTH_AT: usize = 12;
+const METADATA_CRC_AT: usize = 16;
+const NUMBERS_CRC_AT: usize = 20;
+const NUMBERS_LENGTH_AT: usize = 24;
+const PREAMBLE_CRC_AT: usize = 32;
+const METADATA_AT: usize = 36;
+
+/// The bytes as a table's file: as they are, and with every checksum and length made right, so that what they guard is read.
+pub(crate) fn table(bytes: &[u8]) {
+    let mended = mended(bytes.to_vec());
+    let both = [bytes, &mended];
+    for bytes in &both[usize::from(mended == bytes)..] {
+        // Numbers are read in place.
+        let mut words = vec![0_u64; bytes.len().div_ceil(8)];
+        let length = bytes.len();
+        bytemuck::cast_slice_mut(&mut words)[..length].copy_from_slice(bytes);
+        match Table::from_bytes(Aligned { words, length }) {
+            Ok(table) => use_table(&table),
+            Err(problem) => assert_ne!(problem, FormatError::Misaligned),
+        }
+    }
+}
+
+/// Bytes that begin at a multiple of 8.
+#[derive(Debug)]
+struct Aligned {
+    words: Vec<u64>,
+    length: usize,
+}
+
+impl FixedBytes for Aligned {}
+
+impl AsRef<[u8]> for Aligned {
+    fn as_ref(&self) -> &[u8] {
+        &bytemuck::cast_slice(&self.words)[..self.length]
+    }
+}
+
+/// The bytes with every length and checksum of a table's file made to fit.
+fn mended(mut bytes: Vec<u8>) -> Vec<u8> {
+    let set = |bytes: &mut [u8], at: usize, value: u32| {
+        bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
+    };
+    if bytes.len() < METADATA_AT {
+        return bytes;
+    }
+    bytes[..8].copy_from_slice(&MAGIC);
+    set(&mut bytes, VERSION_AT, VERSION);
+    let room = bytes.len() - METADATA_AT;
+    let claimed = u32::from_le_bytes(core::array::from_fn(|k| bytes[METADATA_LENGTH_AT + k]));
+    let metadata = (claimed as usize).min(room);
+    set(&mut bytes, METADATA_LENGTH_AT, metadata as u32);
+    let end = METADATA_AT + metadata;
+    let numbers = end.next_multiple_of(64).min(bytes.len());
+    bytes[end..numbers].fill(0);
+    let sums = [&bytes[METADATA_AT..end], &bytes[numbers..]].map(crc32fast::hash);
+    set(&mut bytes, METADATA_CRC_AT, sums[0]);
+    set(&mut bytes, NUMBERS_CRC_AT, sums[1]);
+    let length = (bytes.len() - numbers) as u64;
+    bytes[NUMBERS_LENGTH_AT..PREAMBLE_CRC_AT].copy_from_slice(&length.to_le_bytes());
+    let sum = crc32fast::hash(&bytes[..PREAMBLE_CRC_AT]);
+    set(&mut bytes, PREAMBLE_CRC_AT, sum);
+    bytes
+}
+
+/// Rays, curves and frames from a table whose numbers may be anything finite: whatever they are, they come to an end.
+fn use_table<B: FixedBytes + Sync>(table: &Table<B>) {
+    let lookup = table.lookup();
+    for (u, slope) in RAYS {
+        let ray = Ray::new(u, slope).unwrap();
+        let events = lookup.follow(ray, &RADII).unwrap();
+        assert!(matches!(
+            events.last(),
+            Some(Event {
+                kind: EventKind::End(_),
+                ..
+            })
+        ));
+    }
+    // Curves through noise have as many nodes as there may be, a second's work: for one table of sixteen.
+    let sum = crc32fast::hash(table.bytes()) as usize;
+    if sum.is_multiple_of(16) {
+        let name = ["classic", "inside", "edge-on"][sum / 16 % 3];
+        let scene = Scene::builtin(name).unwrap().with_size(24, 16).unwrap();
+        draw(&scene, &lookup);
+    }
+}
+
+const RADII: [f64; 3] = [3.0, 12.0, 30.0];
+
+/// Rays of every kind: far and near, past the hole and into it, about the critical ray.
+const RAYS: [(f64, f64); 8] = [
+    (0.03, 0.1),
+    (0.03, 0.3836),
+    (0.03, -0.2),
+    (0.3, 0.5),
+    (0.7, 0.01),
+    (0.9, -1e-3),
+    (1e-9, 1.0),
+    (0.2, f64::INFINITY),
+];
+
+/// Both kinds of frames of a scene.
+fn draw(scene: &Scene, angles: &impl SweptAngles) {
+    let view = View::new(scene);
+    let curves = Isoradials::new(&Sight::new(scene, &view, scene.tolerance()), angles);
+    let pixels = view.width() as usize * view.height() as usize;
+    let hard = mask::render(&view, &curves).unwrap();
+    assert!(hard.len() == pixels && hard.iter().all(|&pixel| pixel == 0 || pixel == 255));
+    assert_eq!(coverage::render(&view, &curves).unwrap().len(), pixels);
+}
+
+/// The bytes as a scene's file. One that is accepted reads back the same from its own form, and can be drawn.
+pub(crate) fn scene(bytes: &[u8]) {
+    let Ok(text) = str::from_utf8(bytes) else {
+        return;
+    };
+    let animation = match Animation::from_toml(text) {
+        Ok(animation) => animation,
+        Err(error) => return sentence(&error),
+    };
+    let written = animation.to_toml();
+    let back = Animation::from_toml(&written).unwrap();
+    assert_eq!(back.to_toml(), written);
+    let small = animation.with_size(24, 16).unwrap();
+    if let Err(error) = Needs::of_animation(&small) {
+        sentence(&error);
+    }
+    let last = small.frames();
+    for number in BTreeSet::from([1, last / 2 + 1, last]) {
+        if let Err(error) = small.check(number) {
+            sentence(&error);
+        }
+        match small.frame(number) {
+            Ok(scene) => draw(&scene, &draft().lookup()),
+            Err(error) => sentence(&error),
+        }
+    }
+}
+
+/// What says why something is refused: not empty, not endless, and nothing in it that a terminal obeys.
+fn sentence(error: &impl std::error::Error) {
+    let message = error.to_string();
+    assert!(!message.trim().is_empty());
+    assert!(message.len() < 4000, "{} bytes: {message}", message.len());
+    let obeyed = |c: char| c.is_control() && c != '\n';
+    assert!(!message.contains(obeyed), "{message:?}");
+}
+
+fn draft() -> &'static Table<Memory> {
+    static DRAFT: OnceLock<Table<Memory>> = OnceLock::new();
+    DRAFT.get_or_init(|| generate(&Spec::named("draft").unwrap(), &|_, _| ()).unwrap())
+}
+
+/// The bytes as a range of frames: its numbers rise, are counted, and are those of its own form.
+pub(crate) fn frames(bytes: &[u8]) {
+    const MOST: usize = 10_000;
+    let Ok(text) = str::from_utf8(bytes) else {
+        return;
+    };
+    let range: FrameRange = match text.parse() {
+        Ok(range) => range,
+        Err(error) => return sentence(&error),
+    };
+    let written = range.to_string();
+    assert_eq!(
+        written.parse::<FrameRange>().as_ref(),
+        Ok(&range),
+        "{written}"
+    );
+    let numbers: Vec<u32> = range.iter().take(MOST).collect();
+    assert!(numbers[0] >= 1 && numbers.is_sorted_by(|a, b| a < b));
+    assert!(
+        numbers
+            .iter()
+            .all(|&number| number <= range.last() && range.contains(number))
+    );
+    if numbers.len() < MOST {
+        assert_eq!(range.count(), numbers.len() as u64);
+        assert_eq!(numbers.last(), Some(&range.last()));
+        // By its definition.
+        let all = (1..=range.last().min(MOST as u32)).filter(|&number| range.contains(number));
+        assert!(
+            all.eq(numbers
+                .iter()
+                .copied()
+                .filter(|&number| number <= MOST as u32))
+        );
+    }
+}
+
+/// The bytes as a list of rays: each line is a ray or a sentence, and each ray ends.
+pub(crate) fn rays(bytes: &[u8]) {
+    let mut rays = match Rays::new(bytes, "list".into()) {
+        Ok(rays) => rays,
+        Err(error) => return sentence(&error),
+    };
+    let lookup = draft().lookup();
+    for row in &mut rays {
+        let ray = match row {
+            Ok(ray) => ray,
+            Err(error) => {
+                sentence(&error);
+                if error.is_final() {
+                    break;
+                }
+                continue;
+            }
+        };
+        for events in [Exact.follow(ray, &RADII), lookup.follow(ray, &RADII)] {
+            let events = match events {
+                Ok(events) => events,
+                Err(error) => {
+                    sentence(&error);
+                    continue;
+                }
+            };
+            assert!(matches!(
+                events.last(),
+                Some(Event {
+                    kind: EventKind::End(_),
+                    ..
+                })
+            ));
+            assert!(
+                events
+                    .iter()
+                    .all(|event| event.angle >= 0.0 && event.angle.is_finite()),
+                "{ray:?}: {events:?}"
+            );
+        }
+    }
+}
