@@ -216,15 +216,20 @@ impl SceneFile {
     /// [`SceneError::Toml`], with line and column.
     pub(super) fn parse(text: &str) -> Result<Self, SceneError> {
         toml::from_str(text).map_err(|error| SceneError::Toml {
-            message: shortened(error.to_string().trim_end()),
+            message: readable(error.to_string().trim_end()),
         })
     }
 }
 
-/// A message fit to be printed: it quotes the file.
-fn shortened(message: &str) -> String {
+/// The parser's message fit to be read: it quotes the file, and names types as Rust does.
+fn readable(message: &str) -> String {
     const LONGEST: usize = 200;
-    let lines = message.lines().map(|line| repeated(line, LONGEST));
+    let lines = message.lines().map(|line| {
+        repeated(line, LONGEST)
+            .replace("expected f64", "expected a number")
+            .replace("expected i64", "expected a whole number")
+            .replace("expected a boolean", "expected true or false")
+    });
     lines.collect::<Vec<_>>().join("\n")
 }
 
@@ -373,7 +378,12 @@ mod tests {
         let short = message(&SHORTEST.replace("[20, 0, 5]", "[20, 0]"));
         assert!(short.contains("line 2, column 12"), "{short}");
         let text = message(&SHORTEST.replace("width = 64", "width = \"wide\""));
-        assert!(text.contains("line 8, column 9"), "{text}");
+        assert!(
+            text.contains("line 8, column 9") && text.contains("expected a whole number"),
+            "{text}"
+        );
+        let text = message(&SHORTEST.replace("fov = 40", "fov = \"wide\""));
+        assert!(text.contains("expected a number"), "{text}");
     }
 
     #[test]

@@ -56,11 +56,14 @@ fn remedy(path: &Path, force: bool) -> String {
         .find(|&name| name == stem)
         .unwrap_or("standard");
     let force = if force { " --force" } else { "" };
-    if default_path(name) == path {
-        format!("darkness table {name}{force}")
-    } else {
-        let quoted = path.display().to_string().replace('\'', "'\\''");
-        format!("darkness table {name}{force} -o '{quoted}'")
+    match path.to_str() {
+        _ if default_path(name) == path => format!("darkness table {name}{force}"),
+        Some(path) => {
+            let quoted = path.replace('\'', "'\\''");
+            format!("darkness table {name}{force} -o '{quoted}'")
+        }
+        // What is shown of it would name another file.
+        None => format!("darkness table {name}{force} -o FILE"),
     }
 }
 

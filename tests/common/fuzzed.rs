@@ -100,10 +100,10 @@ fn use_table<B: FixedBytes + Sync>(table: &Table<B>) {
             })
         ));
     }
-    // Curves through noise have as many nodes as there may be, a second's work: for one table of sixteen.
+    // Curves through noise have as many nodes as there may be, some seconds' work: for one table of many.
     let sum = crc32fast::hash(table.bytes()) as usize;
-    if sum.is_multiple_of(16) {
-        let name = ["classic", "inside", "edge-on"][sum / 16 % 3];
+    if sum.is_multiple_of(256) {
+        let name = ["classic", "inside", "edge-on"][sum / 256 % 3];
         let scene = Scene::builtin(name).unwrap().with_size(24, 16).unwrap();
         draw(&scene, &lookup);
     }
