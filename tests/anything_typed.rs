@@ -134,7 +134,7 @@ fn scene() -> impl Strategy<Value = Vec<u8>> {
                 continue;
             }
             if of != part {
-                text += &format!("[{of}]\n");
+                text.extend(["[", of, "]\n"]);
                 part = of;
             }
             let line = format!("{key} = {value}\n");

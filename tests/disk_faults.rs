@@ -172,7 +172,7 @@ fn what_may_not_be_written_or_read_is_told_and_stays() {
     let folder = prepared();
     let here = folder.path();
     let mode = |name: &str, mode: u32| {
-        fs::set_permissions(here.join(name), Permissions::from_mode(mode)).unwrap()
+        fs::set_permissions(here.join(name), Permissions::from_mode(mode)).unwrap();
     };
     let is_root = shell(here, "test $(id -u) = 0").0.status.success();
     // Where the program is may be closed to others.

@@ -286,7 +286,7 @@ fn senseless_metadata_is_refused() {
         ("another grid", |m| m.spec.weak.place += 1),
         ("no nodes", |m| m.spec.radial.orbit = 0),
         ("as many nodes as there are numbers", |m| {
-            m.spec.radial.orbit = u32::MAX
+            m.spec.radial.orbit = u32::MAX;
         }),
         ("no name", |m| m.spec.name.clear()),
         ("a name of many lines", |m| m.spec.name.push('\n')),
