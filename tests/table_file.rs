@@ -1,52 +1,20 @@
 //! Guards against a table's file that is read although it is damaged, cut, foreign or of another version; against a
 //! write that leaves half a file or rubbish behind; and against bytes that depend on the machine's threads.
 
+#[path = "common/crafted.rs"]
+mod crafted;
+
 use std::path::Path;
 
-use darkness::table::format::{CONVENTIONS, MAGIC, VERSION};
+use crafted::{
+    Aligned, METADATA_AT, METADATA_LENGTH_AT, NUMBERS_LENGTH_AT, VERSION_AT, mend_preamble, sealed,
+    write_u32,
+};
+use darkness::table::format::{CONVENTIONS, VERSION};
 use darkness::table::{
     FixedBytes, FormatError, Memory, Metadata, Nodes, Spec, Table, TableError, default_path,
     generate, open, save,
 };
-
-/// Where the format's page has the preamble's fields.
-const VERSION_AT: usize = 8;
-const METADATA_LENGTH_AT: usize = 12;
-const METADATA_CRC_AT: usize = 16;
-const NUMBERS_CRC_AT: usize = 20;
-const NUMBERS_LENGTH_AT: usize = 24;
-const PREAMBLE_CRC_AT: usize = 32;
-const METADATA_AT: usize = 36;
-
-/// Bytes that begin at a multiple of 8, and can be changed.
-#[derive(Debug, Clone)]
-struct Aligned {
-    words: Vec<u64>,
-    length: usize,
-}
-
-impl Aligned {
-    fn new(bytes: &[u8]) -> Self {
-        let mut words = vec![0; bytes.len().div_ceil(8)];
-        bytemuck::cast_slice_mut(&mut words)[..bytes.len()].copy_from_slice(bytes);
-        Self {
-            words,
-            length: bytes.len(),
-        }
-    }
-
-    fn bytes_mut(&mut self) -> &mut [u8] {
-        &mut bytemuck::cast_slice_mut(&mut self.words)[..self.length]
-    }
-}
-
-impl FixedBytes for Aligned {}
-
-impl AsRef<[u8]> for Aligned {
-    fn as_ref(&self) -> &[u8] {
-        &bytemuck::cast_slice(&self.words)[..self.length]
-    }
-}
 
 /// Bytes seen through a reference: nothing is copied to ask about them.
 struct View<'a>(&'a [u8]);
@@ -74,33 +42,6 @@ fn problem(bytes: &[u8]) -> FormatError {
 /// What is wrong with bytes that may begin anywhere.
 fn problem_anywhere(bytes: &[u8]) -> FormatError {
     problem(Aligned::new(bytes).as_ref())
-}
-
-fn write_u32(bytes: &mut [u8], at: usize, value: u32) {
-    bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
-}
-
-/// Makes the preamble's own checksum right again.
-fn mend_preamble(bytes: &mut [u8]) {
-    let crc = crc32fast::hash(&bytes[..PREAMBLE_CRC_AT]);
-    write_u32(bytes, PREAMBLE_CRC_AT, crc);
-}
-
-/// A file with the given metadata and numbers, every checksum and length of it right.
-fn sealed(metadata: &[u8], numbers: &[u8]) -> Aligned {
-    let mut bytes = vec![0; METADATA_AT];
-    bytes[..8].copy_from_slice(&MAGIC);
-    write_u32(&mut bytes, VERSION_AT, VERSION);
-    write_u32(&mut bytes, METADATA_LENGTH_AT, metadata.len() as u32);
-    write_u32(&mut bytes, METADATA_CRC_AT, crc32fast::hash(metadata));
-    write_u32(&mut bytes, NUMBERS_CRC_AT, crc32fast::hash(numbers));
-    bytes[NUMBERS_LENGTH_AT..NUMBERS_LENGTH_AT + 8]
-        .copy_from_slice(&(numbers.len() as u64).to_le_bytes());
-    mend_preamble(&mut bytes);
-    bytes.extend(metadata);
-    bytes.resize(bytes.len().next_multiple_of(64), 0);
-    bytes.extend(numbers);
-    Aligned::new(&bytes)
 }
 
 fn encode(metadata: &impl serde::Serialize) -> Vec<u8> {

@@ -4,9 +4,12 @@
 // Each program takes what it needs.
 #![allow(dead_code)]
 
+mod crafted;
+
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
+use crafted::{Aligned, METADATA_AT, METADATA_LENGTH_AT, sealed};
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::csv::Rays;
 use darkness::orbit::exact::Exact;
@@ -16,74 +19,33 @@ use darkness::render::needs::Needs;
 use darkness::render::{coverage, mask};
 use darkness::scene::animation::FrameRange;
 use darkness::scene::{Animation, Scene, View};
-use darkness::table::format::{MAGIC, VERSION};
 use darkness::table::{FixedBytes, FormatError, Memory, Spec, Table, generate};
-
-/// Where the file's format has the preamble's fields.
-const VERSION_AT: usize = 8;
-const METADATA_LENGTH_AT: usize = 12;
-const METADATA_CRC_AT: usize = 16;
-const NUMBERS_CRC_AT: usize = 20;
-const NUMBERS_LENGTH_AT: usize = 24;
-const PREAMBLE_CRC_AT: usize = 32;
-const METADATA_AT: usize = 36;
 
 /// The bytes as a table's file: as they are, and with every checksum and length made right, so that what they guard is read.
 pub(crate) fn table(bytes: &[u8]) {
-    let mended = mended(bytes.to_vec());
-    let both = [bytes, &mended];
+    let mended = mended(bytes);
+    let both: [&[u8]; 2] = [bytes, &mended];
     for bytes in &both[usize::from(mended == bytes)..] {
         // Numbers are read in place.
-        let mut words = vec![0_u64; bytes.len().div_ceil(8)];
-        let length = bytes.len();
-        bytemuck::cast_slice_mut(&mut words)[..length].copy_from_slice(bytes);
-        match Table::from_bytes(Aligned { words, length }) {
+        match Table::from_bytes(Aligned::new(bytes)) {
             Ok(table) => use_table(&table),
             Err(problem) => assert_ne!(problem, FormatError::Misaligned),
         }
     }
 }
 
-/// Bytes that begin at a multiple of 8.
-#[derive(Debug)]
-struct Aligned {
-    words: Vec<u64>,
-    length: usize,
-}
-
-impl FixedBytes for Aligned {}
-
-impl AsRef<[u8]> for Aligned {
-    fn as_ref(&self) -> &[u8] {
-        &bytemuck::cast_slice(&self.words)[..self.length]
-    }
-}
-
 /// The bytes with every length and checksum of a table's file made to fit.
-fn mended(mut bytes: Vec<u8>) -> Vec<u8> {
-    let set = |bytes: &mut [u8], at: usize, value: u32| {
-        bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
+fn mended(bytes: &[u8]) -> Vec<u8> {
+    let Some((preamble, rest)) = bytes.split_at_checked(METADATA_AT) else {
+        return bytes.to_vec();
     };
-    if bytes.len() < METADATA_AT {
-        return bytes;
-    }
-    bytes[..8].copy_from_slice(&MAGIC);
-    set(&mut bytes, VERSION_AT, VERSION);
-    let room = bytes.len() - METADATA_AT;
-    let claimed = u32::from_le_bytes(core::array::from_fn(|k| bytes[METADATA_LENGTH_AT + k]));
-    let metadata = (claimed as usize).min(room);
-    set(&mut bytes, METADATA_LENGTH_AT, metadata as u32);
+    let claimed = core::array::from_fn(|k| preamble[METADATA_LENGTH_AT + k]);
+    let metadata = (u32::from_le_bytes(claimed) as usize).min(rest.len());
     let end = METADATA_AT + metadata;
     let numbers = end.next_multiple_of(64).min(bytes.len());
-    bytes[end..numbers].fill(0);
-    let sums = [&bytes[METADATA_AT..end], &bytes[numbers..]].map(crc32fast::hash);
-    set(&mut bytes, METADATA_CRC_AT, sums[0]);
-    set(&mut bytes, NUMBERS_CRC_AT, sums[1]);
-    let length = (bytes.len() - numbers) as u64;
-    bytes[NUMBERS_LENGTH_AT..PREAMBLE_CRC_AT].copy_from_slice(&length.to_le_bytes());
-    let sum = crc32fast::hash(&bytes[..PREAMBLE_CRC_AT]);
-    set(&mut bytes, PREAMBLE_CRC_AT, sum);
-    bytes
+    sealed(&bytes[METADATA_AT..end], &bytes[numbers..])
+        .as_ref()
+        .to_vec()
 }
 
 /// Rays, curves and frames from a table whose numbers may be anything finite: whatever they are, they come to an end.
