@@ -503,6 +503,129 @@ fn pictures_too_large_are_refused_before_their_memory_is_asked_for() {
     assert_eq!(files(&here.join("b")).len(), 12);
 }
 
+/// Guards against a file that grows for as long as its own growth is read, and against a scene under what is drawn of it.
+#[test]
+fn what_is_read_is_not_written_to_by_the_standard_output() {
+    let folder = with_animation(2);
+    let here = folder.path();
+    let rays = format!("u0,dudphi\n{}", "0.03,0.1\n".repeat(20_000));
+    fs::write(here.join("rays.csv"), &rays).unwrap();
+    let scene = fs::read_to_string(here.join("small.toml")).unwrap();
+    let program = assert_cmd::cargo::cargo_bin!("darkness")
+        .display()
+        .to_string();
+    for line in [
+        "trace rays.csv --method exact >> rays.csv",
+        "render small.toml --frames 1-2 --format raw -o - 1<>small.toml",
+        "render small.toml --frames 1 -o - >> tables/draft.table",
+    ] {
+        let output = Command::new("sh")
+            .current_dir(here)
+            .args(["-c", &format!("'{program}' {line}")])
+            .output()
+            .unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{line}: {said}");
+        assert!(
+            said.contains("the standard output goes to this file"),
+            "{said}"
+        );
+    }
+    assert_eq!(fs::read_to_string(here.join("rays.csv")).unwrap(), rays);
+    assert_eq!(fs::read_to_string(here.join("small.toml")).unwrap(), scene);
+    done(here, &["table", "inspect", "tables/draft.table"]);
+}
+
+/// Guards against variables and limits that reach deeper than the program's own options.
+#[test]
+fn the_surroundings_change_nothing() {
+    let folder = with_animation(2);
+    let here = folder.path();
+    let program = assert_cmd::cargo::cargo_bin!("darkness")
+        .display()
+        .to_string();
+    for (line, code) in [
+        ("RUST_MIN_STACK=0 {} render small.toml -q -o f_#.png", 0),
+        (
+            "RAYON_NUM_THREADS=20000 {} render small.toml -q -o f_#.png",
+            0,
+        ),
+        ("RAYON_NUM_THREADS=no {} render small.toml -q -o f_#.png", 0),
+        ("TMPDIR=/nowhere {} render small.toml -q -o f_#.png", 0),
+        ("ulimit -f 0; {} --help > help", 0),
+        ("ulimit -f 0; {} bogus 2> error", 2),
+    ] {
+        let line = line.replace("{}", &format!("'{program}'"));
+        let output = Command::new("sh")
+            .current_dir(here)
+            .args(["-c", &line])
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{line}: {said}");
+    }
+    // Ranges of a hundred million frames, where one is asked for.
+    let many: Vec<String> = (2..900).map(|step| format!("1-100000000x{step}")).collect();
+    let scene = fs::read_to_string(here.join("small.toml")).unwrap();
+    fs::write(
+        here.join("long.toml"),
+        scene.replace("frames = 2\n", "frames = 100000000\n"),
+    )
+    .unwrap();
+    refused(
+        here,
+        &[
+            "render",
+            "long.toml",
+            "--explain",
+            "--frames",
+            &many.join(","),
+        ],
+        2,
+        &["--explain tells of one frame"],
+    );
+}
+
+/// Guards against commands that take a file's name for an option, and terminals that take it for an order.
+#[test]
+fn names_that_could_be_taken_for_something_else() {
+    let folder = with_animation(2);
+    let here = folder.path();
+    fs::rename(here.join("small.toml"), here.join("-x.toml")).unwrap();
+    let (script, _) = done(
+        here,
+        &[
+            "job",
+            "slurm",
+            "--table=tables/draft.table",
+            "--output=-o_#.png",
+            "--",
+            "-x.toml",
+        ],
+    );
+    fs::write(here.join("job.sh"), script).unwrap();
+    let bin = Path::new(assert_cmd::cargo::cargo_bin!("darkness"))
+        .parent()
+        .unwrap();
+    let path = format!("{}:{}", bin.display(), std::env::var("PATH").unwrap());
+    let output = Command::new("bash")
+        .current_dir(here)
+        .env("PATH", path)
+        .env("SLURM_ARRAY_TASK_ID", "0")
+        .arg("job.sh")
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(here.join("-o_2.png").is_file());
+    let (code, said) = typed(here, &words(&["render", "\u{1b}[31m.toml"]));
+    assert_eq!(code, 1);
+    is_sentence(&said);
+}
+
 /// Guards against the end of the process where memory is refused: what the system says is told.
 #[test]
 #[cfg(target_os = "linux")]
@@ -513,8 +636,8 @@ fn memory_that_the_system_refuses_is_told() {
         .display()
         .to_string();
     let mut refused = 0;
-    // Kilobytes of address space: from none for the frame to enough for its file.
-    for limit in (60_000..300_000).step_by(12_000) {
+    // Kilobytes of address space: from not enough to begin, over none for the frame, to enough for its file.
+    for limit in (16_000..300_000).step_by(12_000) {
         for antialias in [true, false] {
             let line = format!(
                 "ulimit -v {limit}; exec '{program}' render classic --size 12000x8000 --threads 1 --quiet \

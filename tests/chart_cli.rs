@@ -271,6 +271,8 @@ fn nothing_is_measured_for_files_that_cannot_be_written() {
     small_scene(folder.path());
     fs::create_dir(folder.path().join("there")).unwrap();
     let before = fs::read(folder.path().join("small.toml")).unwrap();
+    #[cfg(unix)]
+    std::os::unix::fs::symlink("../x.csv", folder.path().join("there/link.svg")).unwrap();
     for (args, code, words) in [
         (&["-o", "a.png"][..], 2, &[".svg"][..]),
         (&["no-such-scene"], 1, &["no-such-scene"]),
@@ -280,6 +282,13 @@ fn nothing_is_measured_for_files_that_cannot_be_written() {
         (&["--csv", "-"], 2, &["--csv"]),
         (
             &["-o", "a.svg", "--csv", "there/../a.svg"],
+            2,
+            &["-o and --csv"],
+        ),
+        // A link that leads nowhere yet.
+        #[cfg(unix)]
+        (
+            &["-o", "there/link.svg", "--csv", "x.csv"],
             2,
             &["-o and --csv"],
         ),

@@ -213,6 +213,25 @@ fn nothing_is_written_over_what_is_read_by_whatever_name() {
     ];
     refused(here, &args, 2, &["table that is read"]);
     assert!(files(here) == before);
+    // One frame's name is a link to the scene, another's to the table: these frames fail, the others do not.
+    fs::create_dir(here.join("out")).unwrap();
+    std::os::unix::fs::symlink("../small.toml", here.join("out/f_0002.png")).unwrap();
+    std::os::unix::fs::symlink("../my.table", here.join("out/f_0004.png")).unwrap();
+    let args = [
+        &["render", "small.toml", "-o", PATTERN][..],
+        &["--table", "my.table"],
+    ]
+    .concat();
+    let (output, stderr) = run(here, &args);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        stderr.contains("2,4: out/f_####.png") && stderr.contains("a link to"),
+        "{stderr}"
+    );
+    assert_eq!(files(&here.join("out")).len(), 5);
+    for name in ["small.toml", "g_2.png"] {
+        assert!(fs::read(here.join(name)).unwrap() == before[name], "{name}");
+    }
     // A link is followed.
     std::os::unix::fs::symlink("real.y4m", here.join("link.y4m")).unwrap();
     fs::write(here.join("real.y4m"), "old").unwrap();

@@ -256,6 +256,32 @@ fn a_file_of_another_length_is_refused_before_it_is_mapped() {
     assert!(table::read(&path).unwrap().bytes() == table::open(&path).unwrap().bytes());
 }
 
+/// Guards against memory and time for what only says that it is a table, however long it is.
+#[test]
+fn a_terabyte_that_is_none_of_a_table_is_refused_by_its_beginning() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("a.table");
+    let length = 1_u64 << 40;
+    let mut start = b"\x89DRK\r\n\x1A\n".to_vec();
+    for field in [table::format::VERSION, 28, crc32fast::hash(&[0; 28]), 0] {
+        start.extend(field.to_le_bytes());
+    }
+    start.extend((length - 64).to_le_bytes());
+    start.extend(crc32fast::hash(&start).to_le_bytes());
+    fs::write(&path, &start).unwrap();
+    // It has holes in place of numbers.
+    OpenOptions::new()
+        .write(true)
+        .open(&path)
+        .unwrap()
+        .set_len(length)
+        .unwrap();
+    for error in [table::open(&path).err(), table::read(&path).err()] {
+        let message = error.unwrap().to_string();
+        assert!(message.contains("its metadata"), "{message}");
+    }
+}
+
 /// Guards against a table that each of many workers holds for itself.
 #[test]
 #[cfg(target_os = "linux")]

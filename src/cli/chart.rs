@@ -100,6 +100,8 @@ fn measure(args: &ChartArgs, scene: &Scene, report: Report) -> anyhow::Result<Ch
         Effort::Full
     };
     let name = args.scene.file_stem().unwrap_or(args.scene.as_os_str());
-    let name = name.to_string_lossy().into_owned();
+    // Of what XML cannot hold nothing is left.
+    let is_odd = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
+    let name = name.to_string_lossy().replace(is_odd, "\u{fffd}");
     Ok(Chart::measure(scene, name, effort, &progress)?)
 }

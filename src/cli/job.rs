@@ -133,15 +133,24 @@ pub(super) fn run(args: &JobArgs, report: Report) -> anyhow::Result<()> {
     Ok(print(&text)?)
 }
 
-/// A path as text: the job is one.
+/// A path as text, which the job is: nothing that a command could take for an option.
 fn text(path: &Path) -> Result<String, Misuse> {
     // YAML takes some more for ends of lines, and one for a mark of its own.
-    let is_odd = |c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}' | '\u{feff}');
+    let is_odd = |c: char| {
+        c.is_control()
+            || matches!(
+                c,
+                '\u{2028}' | '\u{2029}' | '\u{feff}' | '\u{fffe}' | '\u{ffff}'
+            )
+    };
     let text = path.to_str().filter(|text| !text.contains(is_odd));
-    text.map(str::to_owned)
-        .ok_or_else(|| Misuse::UnprintablePath {
-            path: path.to_owned(),
-        })
+    let as_path = |text: &str| {
+        let before = if text.starts_with('-') { "./" } else { "" };
+        format!("{before}{text}")
+    };
+    text.map(as_path).ok_or_else(|| Misuse::UnprintablePath {
+        path: path.to_owned(),
+    })
 }
 
 /// The template with each `@KEY@` replaced, in one pass: what is put in is not looked through.

@@ -17,6 +17,7 @@ mod target;
 mod trace;
 
 use std::io::{self, Write};
+use std::num::NonZero;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -120,6 +121,8 @@ enum Misuse {
     MmapUnused,
     #[error("--require-table is about a table, which only --method table reads")]
     TableUnused,
+    #[error("{}: the standard output goes to this file, the {what} that is read; send it elsewhere", path.display())]
+    StdoutOntoInput { path: PathBuf, what: &'static str },
     #[error("{}: -o and --csv name one file; give each its own", path.display())]
     OneFileForTwo { path: PathBuf },
     #[error("the CSV goes to a file, not to the standard output: give --csv a file's name")]
@@ -189,18 +192,45 @@ struct Threads {
     threads: Option<u16>,
 }
 
+/// More than any machine's cores.
+const MOST_THREADS: usize = 1024;
+
+/// The stack of a thread, in bytes, whatever the environment says of stacks.
+const THREAD_STACK: usize = 2 << 20;
+
+/// What the program takes beside its frames, in bytes, with a margin.
+const TO_BEGIN: usize = 32 << 20;
+
+/// Asks for so much memory, and gives it back. Wherever else the system refuses some, the process ends.
+fn check_memory(bytes: usize) -> anyhow::Result<()> {
+    Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| {
+        let size = ByteSize(bytes as u64);
+        anyhow::anyhow!(
+            "there is not the memory to begin with, {size}: allow more, or ask for fewer --threads"
+        )
+    })
+}
+
 /// Starts the threads, all there will be: rayon's own start, at the first parallel loop, would panic where the system
 /// refuses one.
 fn start_threads(threads: Option<u16>) -> anyhow::Result<()> {
-    let count = threads.map_or(0, usize::from); // 0: rayon chooses
+    let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
+    let count = threads.map_or_else(cores, usize::from).min(MOST_THREADS);
+    check_memory(count.saturating_mul(THREAD_STACK) + TO_BEGIN)?;
     rayon::ThreadPoolBuilder::new()
         .num_threads(count)
+        .stack_size(THREAD_STACK)
         .build_global()
         .map_err(|error| anyhow::anyhow!("the threads to compute with cannot be started ({error}): ask for fewer with --threads"))
 }
 
 /// Runs the program on its arguments.
 pub fn run() -> ExitCode {
+    interrupt::survive_quotas();
+    if let Err(error) = check_memory(TO_BEGIN) {
+        warn(&error);
+        return ExitCode::FAILURE;
+    }
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
@@ -209,7 +239,6 @@ pub fn run() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
-    interrupt::survive_quotas();
     let report = Report::new(cli.quiet);
     let run = || match cli.verb {
         Verb::Render(args) => render::run(&args, report),

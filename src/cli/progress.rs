@@ -26,7 +26,7 @@ impl Report {
     /// Says what happens or has been done.
     pub(super) fn note(self, message: impl Display) {
         if !self.quiet {
-            let _ = writeln!(io::stderr(), "{message}");
+            let _ = writeln!(io::stderr(), "{}", readable(&message));
         }
     }
 
@@ -181,7 +181,17 @@ fn frame_bar(total: u64, pixels: u64) -> ProgressBar {
 
 /// Says what is wrong, to whoever listens.
 pub(super) fn warn(message: impl Display) {
-    let _ = writeln!(io::stderr(), "darkness: {message}");
+    let _ = writeln!(io::stderr(), "darkness: {}", readable(&message));
+}
+
+/// A message without what terminals obey: the names of files have any characters.
+fn readable(message: &impl Display) -> String {
+    let shown = |c: char| match c {
+        '\n' => c,
+        c if c.is_control() => char::REPLACEMENT_CHARACTER,
+        c => c,
+    };
+    message.to_string().chars().map(shown).collect()
 }
 
 /// A time in a unit that suits it.

@@ -176,11 +176,39 @@ pub(super) fn same_file(a: &Path, b: &Path) -> bool {
     }
 }
 
+/// Whether the standard output goes to this file.
+pub(super) fn is_stdout(file: &fs::Metadata) -> bool {
+    #[cfg(unix)]
+    if let Ok(stdout) = super::picture::stdout().and_then(|stdout| stdout.metadata()) {
+        use std::os::unix::fs::MetadataExt;
+        let place = |file: &fs::Metadata| (file.dev(), file.ino());
+        return file.is_file() && place(file) == place(&stdout);
+    }
+    #[cfg(not(unix))]
+    let _ = file;
+    false
+}
+
+/// What a path leads to by links, be there a file or not.
+fn led_to(path: &Path) -> PathBuf {
+    // As many as systems follow.
+    const MOST_LINKS: usize = 40;
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let Ok(link) = fs::read_link(&path) else {
+            break;
+        };
+        path = folder_of(&path).join(link);
+    }
+    path
+}
+
 /// Whether both paths name one place, be there a file or not.
 pub(super) fn same_place(a: &Path, b: &Path) -> bool {
     let place = |path: &Path| {
+        let path = led_to(path);
         Some((
-            fs::canonicalize(folder_of(path)).ok()?,
+            fs::canonicalize(folder_of(&path)).ok()?,
             path.file_name()?.to_owned(),
         ))
     };

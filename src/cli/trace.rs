@@ -8,7 +8,7 @@ use clap::Args;
 
 use super::method::{DEFAULT_TABLE, Method, MethodArgs};
 use super::progress::{Report, warn};
-use super::{Misuse, StdoutError, start_threads};
+use super::{Misuse, StdoutError, start_threads, target};
 use crate::orbit::csv::Rays;
 use crate::orbit::exact::Exact;
 use crate::orbit::{EventKind, Fate, MIN_U, OrbitError, Orbits, Ray};
@@ -86,6 +86,11 @@ fn open(input: Option<&Path>) -> anyhow::Result<(Box<dyn BufRead>, String)> {
             let name = path.display().to_string();
             let file = File::open(path)
                 .map_err(|error| anyhow::anyhow!("{name}: the rays cannot be read: {error}"))?;
+            let is_stdout = file.metadata().is_ok_and(|file| target::is_stdout(&file));
+            if is_stdout {
+                let (path, what) = (path.to_owned(), "list");
+                return Err(Misuse::StdoutOntoInput { path, what }.into());
+            }
             Ok((Box::new(BufReader::with_capacity(BUFFER, file)), name))
         }
         // Without a word the program would seem to hang.

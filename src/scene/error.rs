@@ -32,7 +32,7 @@ pub enum SceneError {
         message: String,
     },
     /// A number is infinite or not a number.
-    #[error("{key} holds {value:?}: every number of a scene must be finite")]
+    #[error("{key} holds {value:?}: every number of a scene must be finite, between keyframes too")]
     NotFinite {
         /// The key, with its table.
         key: &'static str,

@@ -113,7 +113,11 @@ pub fn open(path: &Path) -> Result<Table<Mmap>, TableError> {
 /// Those of [`open`].
 pub fn read(path: &Path) -> Result<Table<Memory>, TableError> {
     let (file, length) = sized(path)?;
-    let mut words = vec![0_u64; length.div_ceil(8)];
+    let mut words = Vec::new();
+    words
+        .try_reserve_exact(length.div_ceil(8))
+        .map_err(|_| unreadable(path, io::ErrorKind::OutOfMemory.into()))?;
+    words.resize(length.div_ceil(8), 0_u64);
     let bytes = &mut bytemuck::cast_slice_mut(&mut words)[..length];
     let cut_short = |error: io::Error| match error.kind() {
         io::ErrorKind::UnexpectedEof => unusable(path, FormatError::Changed),
@@ -127,7 +131,8 @@ pub fn read(path: &Path) -> Result<Table<Memory>, TableError> {
     Table::from_bytes(Memory(words)).map_err(|problem| unusable(path, problem))
 }
 
-/// A table's file and its length, which is what its first bytes say.
+/// A table's file and its length, which is what its first bytes say. All is checked but the numbers: a file that is none of a table is
+/// neither mapped nor read to its end, however long it is.
 fn sized(path: &Path) -> Result<(File, usize), TableError> {
     let unreadable = |error| unreadable(path, error);
     // Asked before it is opened: to open a pipe is to wait for its other end.
@@ -142,12 +147,12 @@ fn sized(path: &Path) -> Result<(File, usize), TableError> {
     }
     let mut file = File::open(path).map_err(unreadable)?;
     let length = file.metadata().map_err(unreadable)?.len();
-    let mut start = Vec::with_capacity(format::METADATA_AT);
+    let mut start = Vec::with_capacity(format::LONGEST_HEAD);
     (&file)
-        .take(format::METADATA_AT as u64)
+        .take(format::LONGEST_HEAD as u64)
         .read_to_end(&mut start)
         .map_err(unreadable)?;
-    format::layout(&start, length).map_err(|problem| unusable(path, problem))?;
+    format::head(&start, length).map_err(|problem| unusable(path, problem))?;
     file.rewind().map_err(unreadable)?;
     let length = usize::try_from(length).map_err(|_| unusable(path, FormatError::Changed))?;
     Ok((file, length))

@@ -44,12 +44,14 @@ const METADATA_CRC_AT: usize = 16;
 const NUMBERS_CRC_AT: usize = 20;
 const NUMBERS_LENGTH_AT: usize = 24;
 const PREAMBLE_CRC_AT: usize = 32;
-/// How many bytes tell how long the file is.
-pub(crate) const METADATA_AT: usize = 36;
+const METADATA_AT: usize = 36;
 const ALIGNMENT: usize = 64;
 
 /// Far above what [`Metadata`] needs (about 200 bytes); a damaged length cannot make the decoder allocate more.
 const METADATA_LIMIT: usize = 4096;
+
+/// All that comes before the numbers of any table.
+pub(crate) const LONGEST_HEAD: usize = (METADATA_AT + METADATA_LIMIT).next_multiple_of(ALIGNMENT);
 
 /// What the numbers of a table mean, in words; compared on opening.
 pub const CONVENTIONS: &str = "d2u/dphi2 = 3/2 u^2 - u; u = 1/r, Schwarzschild radius 1, radians; cubic B-splines of A, B, V, Z, H";
@@ -156,12 +158,8 @@ fn u64_at(bytes: &[u8], at: usize) -> u64 {
     u64::from_le_bytes(core::array::from_fn(|k| bytes[at + k]))
 }
 
-/// Where the metadata of a file of `actual` bytes ends, and where its numbers begin: by its first bytes, with nothing
-/// else read.
-///
-/// # Errors
-/// [`FormatError`]: another file, another version, a damaged preamble, or more or fewer bytes than it says.
-pub(crate) fn layout(start: &[u8], actual: u64) -> Result<(usize, usize), FormatError> {
+/// Where the metadata of a file of `actual` bytes ends, and where its numbers begin: by its preamble.
+fn layout(start: &[u8], actual: u64) -> Result<(usize, usize), FormatError> {
     let seen = start.len().min(MAGIC.len());
     if start[..seen] != MAGIC[..seen] || start.is_empty() {
         let swapped = |width: usize| {
@@ -208,14 +206,21 @@ pub(crate) fn layout(start: &[u8], actual: u64) -> Result<(usize, usize), Format
     Ok((metadata_end, numbers_at))
 }
 
-/// Checks every byte of a table.
-pub(crate) fn parse(bytes: &[u8]) -> Result<Layout, FormatError> {
-    let start = &bytes[..bytes.len().min(METADATA_AT)];
-    let (metadata_end, numbers_at) = layout(start, bytes.len() as u64)?;
+/// Checks all of a file of `actual` bytes that comes before its numbers, which is in its first [`LONGEST_HEAD`] bytes.
+///
+/// # Errors
+/// [`FormatError`]: what is wrong.
+pub(crate) fn head(start: &[u8], actual: u64) -> Result<Layout, FormatError> {
+    let (metadata_end, numbers_at) = layout(start, actual)?;
     let metadata_length = metadata_end - METADATA_AT;
-    let numbers_length = (bytes.len() - numbers_at) as u64;
-    let encoded = &bytes[METADATA_AT..metadata_end];
-    if crc32fast::hash(encoded) != u32_at(bytes, METADATA_CRC_AT) {
+    let numbers_length = actual - numbers_at as u64;
+    let (Some(encoded), Some(padding)) = (
+        start.get(METADATA_AT..metadata_end),
+        start.get(metadata_end..numbers_at),
+    ) else {
+        return Err(FormatError::Changed);
+    };
+    if crc32fast::hash(encoded) != u32_at(start, METADATA_CRC_AT) {
         return Err(damaged("the checksum of its metadata does not match"));
     }
     let config = bincode::config::standard().with_limit::<METADATA_LIMIT>();
@@ -242,9 +247,20 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Layout, FormatError> {
     {
         return Err(damaged("its grid and the length of its numbers disagree"));
     }
-    if bytes[metadata_end..numbers_at].iter().any(|&b| b != 0) {
+    if padding.iter().any(|&b| b != 0) {
         return Err(damaged("the padding before its numbers is not zero"));
     }
+    Ok(Layout {
+        metadata,
+        numbers_at,
+    })
+}
+
+/// Checks every byte of a table.
+pub(crate) fn parse(bytes: &[u8]) -> Result<Layout, FormatError> {
+    let start = &bytes[..bytes.len().min(LONGEST_HEAD)];
+    let layout = head(start, bytes.len() as u64)?;
+    let numbers_at = layout.numbers_at;
     if crc32fast::hash(&bytes[numbers_at..]) != u32_at(bytes, NUMBERS_CRC_AT) {
         return Err(damaged("the checksum of its numbers does not match"));
     }
@@ -252,10 +268,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Layout, FormatError> {
     if !numbers.iter().all(|x| x.is_finite()) {
         return Err(damaged("one of its numbers is not finite"));
     }
-    Ok(Layout {
-        metadata,
-        numbers_at,
-    })
+    Ok(layout)
 }
 
 /// The numbers, read in place.

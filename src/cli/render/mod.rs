@@ -182,7 +182,7 @@ fn explain_one(
     report: Report,
 ) -> anyhow::Result<()> {
     let number = frames.iter().next().unwrap_or(1);
-    if args.frames.is_some() && frames.count() > 1 {
+    if args.frames.is_some() && frames.iter().nth(1).is_some() {
         return Err(Misuse::ExplainsOne.into());
     }
     let scene = animation.frame(number)?;

@@ -151,7 +151,15 @@ impl Output {
             Self::Picture(Destination::File(path)) | Self::Film(_, Place::File(path)) => {
                 not_onto(path, input, what)
             }
-            Self::Picture(Destination::Stdout) | Self::Film(..) => Ok(()),
+            Self::Picture(Destination::Stdout) | Self::Film(_, Place::Stdout) => {
+                let is_stdout = fs::metadata(input).is_ok_and(|file| target::is_stdout(&file));
+                if is_stdout {
+                    let path = input.to_owned();
+                    return Err(Misuse::StdoutOntoInput { path, what });
+                }
+                Ok(())
+            }
+            Self::Film(_, Place::Device(_)) => Ok(()),
             Self::Sequence(pattern) => {
                 let led_to = fs::canonicalize(input).unwrap_or_else(|_| input.to_owned());
                 for name in [input, &led_to]

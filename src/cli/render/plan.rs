@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::io::{self, Write};
+use std::path::PathBuf;
 
 use super::super::method::{Checked, Method, hex};
 use super::super::progress::Report;
@@ -28,6 +29,8 @@ pub(super) struct Plan<'a> {
     pub(super) first: Scene,
     pub(super) output: Output,
     pub(super) needs: Needs,
+    /// The files that are read, by the names that no link leads from.
+    pub(super) inputs: Vec<PathBuf>,
 }
 
 impl<'a> Plan<'a> {
@@ -44,10 +47,15 @@ impl<'a> Plan<'a> {
         let output = Output::new(args, animation, count)?;
         let needs = Needs::of_animation(animation)?;
         let needed = needs.table().map(|candidate| candidate.name);
-        output.spares(&args.scene, "scene", frames)?;
-        if let Some(table) = args.method.table_path(needed) {
-            output.spares(&table, "table", frames)?;
+        let mut inputs = vec![(args.scene.clone(), "scene")];
+        inputs.extend(args.method.table_path(needed).map(|table| (table, "table")));
+        for (input, what) in &inputs {
+            output.spares(input, what, frames)?;
         }
+        let inputs = inputs
+            .iter()
+            .filter_map(|(input, _)| fs::canonicalize(input).ok());
+        let inputs = inputs.collect();
         let checked = args.method.check(needed)?;
         let first = animation.frame(frames.iter().next().unwrap_or(1))?;
         if !args.dry_run
@@ -66,6 +74,7 @@ impl<'a> Plan<'a> {
             first,
             output,
             needs,
+            inputs,
         };
         Ok((plan, checked))
     }

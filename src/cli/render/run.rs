@@ -138,7 +138,7 @@ impl Run<'_> {
         let png = self.plan.encode(pixels, &self.origin(number))?;
         let encoded = Instant::now();
         // The reason without the file's name: the failures of many frames are told together.
-        sequence::write(&pattern.file(number), &png)
+        sequence::write(&pattern.file(number), &png, &self.plan.inputs)
             .map_err(|error| anyhow::anyhow!("{pattern} cannot be written: {error}"))?;
         self.done(number, effort, (encoded - start, encoded.elapsed()));
         Ok(())

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::pattern::Pattern;
 use crate::output::{Unfinished, leftover, remove_if_dead};
@@ -16,14 +16,20 @@ pub(super) fn is_finished(path: &Path, most: u64, origin: &Origin) -> bool {
     may_be && fs::read(path).is_ok_and(|file| origin.made(&file))
 }
 
-/// Writes a frame's file, whole or not at all.
+/// Writes a frame's file, whole or not at all; a link is followed, but to none of `inputs`.
 ///
 /// # Errors
 /// What the system says.
-pub(super) fn write(path: &Path, png: &[u8]) -> io::Result<()> {
+pub(super) fn write(path: &Path, png: &[u8], inputs: &[PathBuf]) -> io::Result<()> {
     // It would be replaced by a file.
     if fs::metadata(path).is_ok_and(|kind| !kind.is_file()) {
         return Err(io::Error::other("it is there and no regular file"));
+    }
+    let is_link = fs::symlink_metadata(path).is_ok_and(|kind| kind.is_symlink());
+    if is_link && fs::canonicalize(path).is_ok_and(|led_to| inputs.contains(&led_to)) {
+        return Err(io::Error::other(
+            "it is a link to the scene or the table that is read",
+        ));
     }
     let mut unfinished = Unfinished::new(path)?;
     unfinished.file().write_all(png)?;
