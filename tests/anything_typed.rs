@@ -16,7 +16,7 @@ use std::time::Duration;
 use animated::{done, files, refused, with_animation};
 use assert_cmd::cargo::cargo_bin_cmd;
 use proptest::prelude::*;
-use proptest::test_runner::{Config, TestRunner};
+use proptest::test_runner::{Config, TestRng, TestRunner};
 
 /// How often the program is run on scenes made up.
 const SCENES: u32 = 1000;
@@ -212,7 +212,9 @@ fn a_thousand_scenes_are_drawn_or_refused() {
         failure_persistence: None,
         ..Config::default()
     };
-    let made = TestRunner::new(config).run(&scene(), |text| {
+    // The same thousand each time.
+    let random = TestRng::deterministic_rng(config.rng_algorithm);
+    let made = TestRunner::new_with_rng(config, random).run(&scene(), |text| {
         fs::write(here.join("made.toml"), &text).unwrap();
         let animated = text.windows(11).any(|word| word == b"[animation]");
         let (code, said) = typed(here, &render(animated));
