@@ -90,6 +90,9 @@ fn each_pixel(
     Ok(pixels)
 }
 
+/// More than curves and whatever else a frame takes beside its pixels, in bytes.
+const BESIDE: usize = 16 << 20;
+
 /// A black frame.
 fn blank(view: &View) -> Result<Vec<u8>, RenderError> {
     let mut pixels = Vec::new();
@@ -109,6 +112,12 @@ fn blank_into(view: &View, pixels: &mut Vec<u8>) -> Result<(), RenderError> {
     let length = usize::try_from(bytes).map_err(|_| memory())?;
     let more = length.saturating_sub(pixels.len());
     pixels.try_reserve_exact(more).map_err(|_| memory())?;
+    if more > 0 {
+        // What drawing takes beside it: asked for and given back, since where it is refused later the process ends.
+        Vec::<u8>::new()
+            .try_reserve_exact(BESIDE)
+            .map_err(|_| memory())?;
+    }
     pixels.resize(length, 0);
     Ok(())
 }

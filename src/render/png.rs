@@ -8,6 +8,9 @@ use std::io;
 
 use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
+/// More than an encoder takes whatever its pixels, in bytes.
+const BESIDE: usize = 4 << 20;
+
 /// The first bytes of every PNG file.
 const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1A\n";
 
@@ -119,7 +122,7 @@ pub fn encode(
 fn check_memory(pixels: usize) -> io::Result<()> {
     // Frames with hard edges take an eighth packed and as much encoded, smooth ones a tenth encoded, twice.
     let mut room = Vec::<u8>::new();
-    room.try_reserve_exact(pixels / 2).map_err(|_| {
+    room.try_reserve_exact(pixels / 2 + BESIDE).map_err(|_| {
         let problem =
             format!("there is not the memory to encode {pixels} pixels: ask for a smaller picture");
         io::Error::new(io::ErrorKind::OutOfMemory, problem)
