@@ -6,6 +6,7 @@ pub mod isoradial;
 mod lanes;
 pub mod orbit;
 pub mod output;
+mod quotation;
 pub mod render;
 pub mod scene;
 pub mod table;

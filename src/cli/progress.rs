@@ -8,6 +8,8 @@ use std::time::{Duration, Instant};
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressState, ProgressStyle};
 
+use crate::quotation::printable;
+
 /// The standard error, as the user wants it.
 ///
 /// Nothing here can fail: where the standard error takes no more, the work goes on without words (`eprintln!` would
@@ -186,11 +188,7 @@ pub(super) fn warn(message: impl Display) {
 
 /// A message without what terminals obey: the names of files have any characters.
 fn readable(message: &impl Display) -> String {
-    let shown = |c: char| match c {
-        '\n' => c,
-        c if c.is_control() => char::REPLACEMENT_CHARACTER,
-        c => c,
-    };
+    let shown = |c| if c == '\n' { c } else { printable(c) };
     message.to_string().chars().map(shown).collect()
 }
 

@@ -86,17 +86,37 @@ fn open(input: Option<&Path>) -> anyhow::Result<(Box<dyn BufRead>, String)> {
             let name = path.display().to_string();
             let file = File::open(path)
                 .map_err(|error| anyhow::anyhow!("{name}: the rays cannot be read: {error}"))?;
-            let is_stdout = file.metadata().is_ok_and(|file| target::is_stdout(&file));
-            if is_stdout {
-                let (path, what) = (path.to_owned(), "list");
-                return Err(Misuse::StdoutOntoInput { path, what }.into());
-            }
+            check_is_not_written(&file, path)?;
             Ok((Box::new(BufReader::with_capacity(BUFFER, file)), name))
         }
         // Without a word the program would seem to hang.
         None if io::stdin().is_terminal() => Err(Misuse::NoRays.into()),
-        _ => Ok((Box::new(io::stdin().lock()), "standard input".into())),
+        _ => {
+            let name = "standard input";
+            if let Ok(list) = stdin() {
+                check_is_not_written(&list, Path::new(name))?;
+            }
+            Ok((Box::new(io::stdin().lock()), name.into()))
+        }
     }
+}
+
+/// What is printed onto the end of the list would be read in its turn, without end.
+fn check_is_not_written(list: &File, name: &Path) -> Result<(), Misuse> {
+    if list.metadata().is_ok_and(|file| target::is_stdout(&file)) {
+        let (path, what) = (name.to_owned(), "list");
+        return Err(Misuse::StdoutOntoInput { path, what });
+    }
+    Ok(())
+}
+
+/// The standard input, to be asked what it is.
+fn stdin() -> io::Result<File> {
+    #[cfg(unix)]
+    let owned = std::os::fd::AsFd::as_fd(&io::stdin()).try_clone_to_owned()?;
+    #[cfg(windows)]
+    let owned = std::os::windows::io::AsHandle::as_handle(&io::stdin()).try_clone_to_owned()?;
+    Ok(File::from(owned))
 }
 
 fn trace(

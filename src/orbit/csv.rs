@@ -3,6 +3,7 @@
 use std::io::{self, BufRead, Read};
 
 use super::{OrbitError, Ray};
+use crate::quotation::beginning;
 
 /// Rays read from CSV text with a header: an iterator of them, or of why a line holds none.
 ///
@@ -241,11 +242,8 @@ fn number(column: &'static str, text: &str) -> Result<f64, Problem> {
 /// The most of anybody's text that a message repeats, in characters and in names.
 const MOST_REPEATED: usize = 40;
 
-/// A text in quotes, fit for a message: of a very long one its beginning, and nothing that a terminal obeys.
 fn quoted(text: &str) -> String {
-    let begin: String = text.chars().take(MOST_REPEATED).collect();
-    let rest = if begin.len() < text.len() { "…" } else { "" };
-    format!("{begin:?}{rest}")
+    format!("\"{}\"", beginning(text, MOST_REPEATED))
 }
 
 /// The names of columns.

@@ -8,20 +8,6 @@ use super::validate::{
     FARTHEST_CAMERA, ISCO_RADIUS, MAX_IMAGE_SIDE, MAX_TOLERANCE, NARROWEST_FOV, WIDEST_DISK,
 };
 
-/// Somebody's line as a message repeats it: the beginning of a very long one, and nothing that a terminal obeys.
-pub(super) fn repeated(line: &str, longest: usize) -> String {
-    let shown = |c: char| match c {
-        '\t' => ' ',
-        c if c.is_control() => char::REPLACEMENT_CHARACTER,
-        c => c,
-    };
-    let mut text: String = line.chars().take(longest).map(shown).collect();
-    if line.chars().nth(longest).is_some() {
-        text.push('…');
-    }
-    text
-}
-
 /// Why a scene is refused: what is wrong, what is allowed, and why.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {

@@ -6,8 +6,8 @@ use serde::de::{Error as _, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use super::animation::Interpolation;
-use super::error::repeated;
 use super::{DEFAULT_TOLERANCE, Scene, SceneError};
+use crate::quotation::beginning;
 
 /// The whole file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -225,7 +225,7 @@ impl SceneFile {
 fn readable(message: &str) -> String {
     const LONGEST: usize = 200;
     let lines = message.lines().map(|line| {
-        repeated(line, LONGEST)
+        beginning(line, LONGEST)
             .replace("expected f64", "expected a number")
             .replace("expected i64", "expected a whole number")
             .replace("expected a boolean", "expected true or false")

@@ -3,7 +3,7 @@
 use core::fmt;
 use core::str::FromStr;
 
-use super::super::error::repeated;
+use crate::quotation::beginning;
 
 /// A set of frame numbers, written as `N`, `A-B`, `A-BxS` or `A-B:S` (from A to B in steps of S), with commas between
 /// several.
@@ -90,7 +90,7 @@ impl FromStr for FrameRange {
 impl Steps {
     fn parse(part: &str) -> Result<Self, FrameRangeError> {
         // Of a very long one its beginning.
-        let owned = || repeated(part, 40);
+        let owned = || beginning(part, 40);
         // Digits alone: a sign is none of a number here.
         let number = |text: &str| {
             let is_digits = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
