@@ -3,7 +3,6 @@
 pub mod chart;
 pub mod cli;
 pub mod isoradial;
-mod lanes;
 pub mod orbit;
 pub mod output;
 mod quotation;

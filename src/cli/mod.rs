@@ -142,11 +142,6 @@ enum Misuse {
         needed: ByteSize,
         allowed: ByteSize,
     },
-    #[error(
-        "DARKNESS_SIMD is `{name}`: the instruction sets that it may name are {}; set it to one of these, or not at all",
-        crate::lanes::NAMES.join(", ")
-    )]
-    InstructionSet { name: String },
     #[error("{0}")]
     Tolerance(#[source] crate::scene::SceneError),
     #[error("--{flag} is about isoradial curves, which only --method table draws")]
@@ -248,9 +243,7 @@ pub fn run() -> ExitCode {
         Verb::Chart(args) => chart::run(&args, report),
         Verb::Job(args) => job::run(&args, report),
     };
-    let checked = crate::lanes::check_environment()
-        .map_err(|name| anyhow::Error::new(Misuse::InstructionSet { name }));
-    match checked.and_then(|()| run()) {
+    match run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error)
             if error

@@ -35,14 +35,10 @@
 //! [`Isoradials::error`] tells what has come of it, each part for itself; `tests/needs.rs` checks it against exact
 //! edges, and that choices made for 8 T break T.
 
-mod interval;
 mod nodes;
-mod open;
-mod patch;
-mod picture;
+mod outline;
 mod piece;
-mod range;
-mod runs;
+mod ray_bounds;
 mod sight;
 mod solve;
 mod turns;
@@ -51,11 +47,10 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 use crate::orbit::path::{Between, SweptAngles};
 use nodes::{Coarsest, LOOKED_AT, Nodes, SOLVED, coarsest};
-pub(crate) use open::{Band, EdgeOf, Listing, MOST_BANDS, MOST_EDGES, Open, Sifted};
-pub(crate) use patch::{Bent, Patch};
-pub(crate) use picture::{Line, Picture};
-use piece::{Piece, thickness};
-pub use range::{Bundle, Verdict};
+pub(crate) use outline::{Boundary, Sector};
+pub(crate) use piece::Piece;
+use piece::thickness;
+pub use ray_bounds::RayBounds;
 use sight::Shown;
 pub use sight::Sight;
 use solve::{Closeness, Found, Target, target};
@@ -98,6 +93,8 @@ pub struct Isoradials {
     critical: f64,
     /// Of each quarter turn, order by order, those that the picture shows.
     quarters: [Vec<Piece>; 2],
+    /// Of each quarter turn, which order lies in front.
+    sectors: [Vec<Sector>; 2],
     orders: Vec<Order>,
     left_out: Option<Thinness>,
     error: EdgeError,
@@ -146,6 +143,7 @@ impl Isoradials {
             sight: *sight,
             critical: sight.critical(),
             quarters: [Vec::new(), Vec::new()],
+            sectors: [Vec::new(), Vec::new()],
             orders: Vec::new(),
             left_out: None,
             error: EdgeError::default(),
@@ -181,6 +179,7 @@ impl Isoradials {
                 quarter.extend(piece);
             }
         }
+        curves.sectors = [0, 1].map(|quarter| outline::sectors(&curves.quarters[quarter]));
         curves
     }
 
@@ -247,9 +246,14 @@ impl Isoradials {
         false
     }
 
+    /// The sectors of one quarter turn, by rising x: which order lies in front.
+    pub(crate) fn sectors(&self, quarter: usize) -> &[Sector] {
+        &self.sectors[quarter]
+    }
+
     /// The pieces of one quarter turn, order by order.
     #[inline]
-    fn quarter(&self, quarter: usize) -> &[Piece] {
+    pub(crate) fn quarter(&self, quarter: usize) -> &[Piece] {
         &self.quarters[quarter]
     }
 }

@@ -2,16 +2,12 @@
 
 use super::Edge;
 use super::nodes::Nodes;
-use super::runs::Runs;
 use super::sight::Shown;
-use crate::lanes::Real;
-use crate::table::spline::{
-    Cells, Jet, Scale, Stencil, bounds, cell_bounds, jet, thirds, value, value_and_slope,
-};
+use crate::table::spline::{Scale, Stencil, cell_bounds, greatest_bend, value, value_and_slope};
 
 /// A quarter turn of both curves, as splines in x of `h` (or `x h` where h has a pole).
 #[derive(Debug, Clone)]
-pub(super) struct Piece {
+pub(crate) struct Piece {
     /// The image's order.
     pub(super) order: u32,
     axis: Scale,
@@ -19,10 +15,6 @@ pub(super) struct Piece {
     pole: bool,
     inner: Vec<f64>,
     outer: Vec<f64>,
-    inner_thirds: Vec<f64>,
-    outer_thirds: Vec<f64>,
-    inner_runs: Runs,
-    outer_runs: Runs,
     /// No ray of this piece meets the disk with `h` below this
     pub(super) lowest: f64,
     /// or above this.
@@ -34,79 +26,36 @@ impl Piece {
     pub(super) fn new(order: u32, inner: &Nodes, outer: &Nodes) -> Self {
         let count = inner.count().max(outer.count());
         let finer = if inner.count() == count { inner } else { outer };
-        let axis = Scale::new(finer.axis());
-        let (inner_spline, outer_spline) = (inner.spline(count), outer.spline(count));
         let mut piece = Self {
             order,
-            axis,
+            axis: Scale::new(finer.axis()),
             pole: finer.quarter.pole,
-            inner_thirds: thirds(&inner_spline, axis),
-            outer_thirds: thirds(&outer_spline, axis),
-            inner: inner_spline,
-            outer: outer_spline,
-            inner_runs: Runs::new(core::iter::empty()),
-            outer_runs: Runs::new(core::iter::empty()),
+            inner: inner.spline(count),
+            outer: outer.spline(count),
             lowest: f64::INFINITY,
             highest: f64::NEG_INFINITY,
         };
-        let runs = |edge| {
-            Runs::new((0..count - 1).map(|cell| {
-                if piece.pole {
-                    piece.bounds_from_values(edge, (finer.x(cell), finer.x(cell + 1)))
-                } else {
-                    cell_bounds(piece.spline(edge), cell)
-                }
-            }))
-        };
-        let (inner, outer) = (runs(Edge::Inner), runs(Edge::Outer));
-        piece.lowest = outer.over(0, count - 2).0;
-        piece.highest = inner.over(0, count - 2).1;
-        (piece.inner_runs, piece.outer_runs) = (inner, outer);
+        for cell in 0..count - 1 {
+            let x = (finer.x(cell), finer.x(cell + 1));
+            piece.lowest = piece.lowest.min(piece.bounds(Edge::Outer, cell, x).0);
+            piece.highest = piece.highest.max(piece.bounds(Edge::Inner, cell, x).1);
+        }
         piece
     }
 
-    /// Bounds of h over an interval of x.
-    pub(super) fn bounds(&self, edge: Edge, x: (f64, f64)) -> (f64, f64) {
-        /// Of fewer cells than these the values at both ends tell more than the cells' bounds.
-        const FEW: usize = 4;
-        let (first, last) = self.axis.cells(x);
-        if last - first < FEW {
-            return self.bounds_from_values(edge, x);
-        }
-        let runs = match edge {
-            Edge::Inner => &self.inner_runs,
-            Edge::Outer => &self.outer_runs,
-        };
-        runs.over(first, last)
-    }
-
-    fn bounds_from_values(&self, edge: Edge, x: (f64, f64)) -> (f64, f64) {
-        let values = bounds(self.spline(edge), self.axis, x);
+    /// Bounds of h over a cell, whose ends are at x.
+    fn bounds(&self, edge: Edge, cell: usize, x: (f64, f64)) -> (f64, f64) {
+        let (low, high) = cell_bounds(self.spline(edge), cell);
         if !self.pole {
-            return values;
+            return (low, high);
         }
-        // Both ways are right, and the narrower of the two depends on how near the pole is.
-        let (low, high) = over(values, x);
-        let (middle, radius) = self.within(edge, 0.5 * (x.0 + x.1), 0.5 * (x.1 - x.0));
-        (low.max(middle - radius), high.min(middle + radius))
-    }
-
-    /// h = f/x within `reach` of x, by the mean value theorem: the quotient of two bounds forgets what f and x have in
-    /// common.
-    fn within(&self, edge: Edge, x: f64, reach: f64) -> (f64, f64) {
-        let jet = self.jet(edge, &self.about(x, reach));
-        let (h, least) = (jet.value / x, x - reach);
-        if least <= 0.0 {
-            return (h, f64::INFINITY);
+        let quotients = [low / x.0, low / x.1, high / x.0, high / x.1];
+        if quotients.iter().any(|quotient| quotient.is_nan()) {
+            return (f64::NEG_INFINITY, f64::INFINITY);
         }
-        // h′ = (f′ − h)/x = (x f′ − f)/x², and x f′ − f changes by x f″.
-        let far = x + reach;
-        let change = (x * jet.slope - jet.value).abs()
-            + far * (jet.bend.abs() + jet.third[0].abs().max(jet.third[1].abs()) * reach) * reach;
-        (
-            h,
-            change / (least * least) * reach + 16.0 * f64::EPSILON * h.abs(),
-        )
+        let least = quotients.into_iter().fold(f64::INFINITY, f64::min);
+        let greatest = quotients.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        (least, greatest)
     }
 
     /// Whether a ray with `z − κ_c s = excess` meets the disk at x.
@@ -124,31 +73,25 @@ impl Piece {
         if self.pole { kept / x } else { kept }
     }
 
-    /// The splines' cells about x, as far as `reach`.
-    #[inline(always)]
-    pub(super) fn about<T: Real>(&self, x: T, reach: T) -> Cells<T> {
-        self.axis.about(x, reach)
-    }
-
-    /// One edge's spline about there.
-    #[inline(always)]
-    pub(super) fn jet<T: Real>(&self, edge: Edge, about: &Cells<T>) -> Jet<T> {
-        let thirds = match edge {
-            Edge::Inner => &self.inner_thirds,
-            Edge::Outer => &self.outer_thirds,
-        };
-        jet(self.spline(edge), thirds, self.axis, about)
-    }
-
     /// Value and slope of one edge's spline at x.
-    #[inline(always)]
-    pub(super) fn value_and_slope<T: Real>(&self, edge: Edge, x: T) -> [T; 2] {
+    #[inline]
+    pub(crate) fn value_and_slope(&self, edge: Edge, x: f64) -> [f64; 2] {
         value_and_slope(self.spline(edge), self.axis, x)
     }
 
+    /// The greatest size of the second derivative of one edge's spline between two x.
+    pub(crate) fn bend(&self, edge: Edge, x: (f64, f64)) -> f64 {
+        greatest_bend(self.spline(edge), self.axis, x)
+    }
+
     /// Whether the spline is of `x h` in place of h, which has a pole at 0.
-    pub(super) fn has_pole(&self) -> bool {
+    pub(crate) fn has_pole(&self) -> bool {
         self.pole
+    }
+
+    /// The least and the greatest x.
+    pub(super) fn range(&self) -> (f64, f64) {
+        self.axis.range()
     }
 
     fn spline(&self, edge: Edge) -> &[f64] {
@@ -166,7 +109,7 @@ impl Piece {
 
     /// How many bytes a frame reads of it.
     pub(super) fn bytes(&self) -> usize {
-        (2 * (self.inner.len() + self.outer.len()) - 6) * size_of::<f64>()
+        (self.inner.len() + self.outer.len()) * size_of::<f64>()
     }
 }
 
@@ -182,23 +125,4 @@ pub(super) fn thickness(inner: &Nodes, outer: &Nodes, shown: &Shown) -> f64 {
         let (high, low) = (inner.height(i * step_inner), outer.height(i * step_outer));
         shown.apart(thickness, (low.min(high), low.max(high)))
     })
-}
-
-/// The quotients of an interval by one of numbers ≥ 0.
-fn over(values: (f64, f64), x: (f64, f64)) -> (f64, f64) {
-    let low = if values.0 >= 0.0 {
-        values.0 / x.1
-    } else {
-        values.0 / x.0
-    };
-    let high = if values.1 >= 0.0 {
-        values.1 / x.0
-    } else {
-        values.1 / x.1
-    };
-    // 0/0, where nothing is known.
-    (
-        if low.is_nan() { f64::NEG_INFINITY } else { low },
-        if high.is_nan() { f64::INFINITY } else { high },
-    )
 }

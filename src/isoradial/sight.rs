@@ -6,9 +6,7 @@
 //! min(ψ + a, c)`, a being the angle between the picture's centre and the hole, c that between the centre and the
 //! corners: so a radian there is at most [`Sight::pixels_per_radian`]`(ψ) = 1/(p cos² min(ψ + a, c))` pixels.
 
-use core::f64::consts::PI;
-
-use super::range::Bundle;
+use super::ray_bounds::RayBounds;
 use crate::orbit::invariants::{critical_slope, three_u_minus_two};
 use crate::scene::{Scene, View};
 
@@ -30,7 +28,7 @@ pub struct Sight {
     /// The angle between the picture's centre and its corners, in radians.
     pub corner: f64,
     /// The rays that the picture shows.
-    pub window: Bundle,
+    pub window: RayBounds,
     /// What an edge may be off by, in pixels.
     pub tolerance: f64,
 }
@@ -42,18 +40,12 @@ impl Sight {
         let (x, y) = (view.x_at(0.0), view.y_at(0.0));
         let axis = libm::atan2(centre.transverse(), centre.z);
         let corner = libm::atan((x * x + y * y).sqrt());
-        let (width, height) = (f64::from(view.width()), f64::from(view.height()));
         Self {
             tolerance,
             pixel: (view.y_at(0.0) - view.y_at(1.0)).abs(),
             axis,
             corner,
-            window: window(
-                Bundle::new(view, (0.0, width), (0.0, height)),
-                view,
-                axis,
-                corner,
-            ),
+            window: RayBounds::of_picture(view, axis, corner),
             ..Self::all_round(
                 view.u0(),
                 view.slope_scale(),
@@ -73,7 +65,7 @@ impl Sight {
             pixel: 1.0,
             axis: 0.0,
             corner: 0.0,
-            window: Bundle::ALL,
+            window: RayBounds::ALL,
             tolerance: 1.0,
         }
     }
@@ -85,10 +77,7 @@ impl Sight {
             pixel: self.pixel.min(other.pixel),
             axis: self.axis.max(other.axis),
             corner: self.corner.max(other.corner),
-            window: Bundle {
-                kappa: hull(self.window.kappa, other.window.kappa),
-                cotangent: hull(self.window.cotangent, other.window.cotangent),
-            },
+            window: self.window.union(&other.window),
             tolerance: self.tolerance.min(other.tolerance),
             ..*self
         })
@@ -214,52 +203,6 @@ impl Shown {
         let farthest = self.critical + reach.0.max(self.heights.0);
         most.max(self.per_radian(farthest) * between(low, high, self.critical))
     }
-}
-
-/// The rays of the whole picture, from its bundle where that tells anything, and from the circle about its centre.
-fn window(bundle: Option<Bundle>, view: &View, axis: f64, corner: f64) -> Bundle {
-    // Of the bounds' own rounding nothing may be cut off.
-    const PAD: f64 = 1e-12;
-    let most = view.n_a() / view.n_p().abs();
-    let bundle = bundle.unwrap_or(Bundle {
-        cotangent: if most.is_nan() {
-            (0.0, 0.0)
-        } else {
-            (-most, most)
-        },
-        ..Bundle::ALL
-    });
-    let cotangent_at = |psi: f64| {
-        if psi <= 0.0 {
-            f64::INFINITY
-        } else if psi >= PI {
-            f64::NEG_INFINITY
-        } else {
-            libm::cos(psi) / libm::sin(psi)
-        }
-    };
-    let (widest, narrowest) = (axis + corner, axis - corner);
-    let (low, high) = (
-        bundle.kappa.0.max(cotangent_at(widest * (1.0 + PAD))),
-        bundle.kappa.1.min(cotangent_at(narrowest - PAD * axis)),
-    );
-    let (least, greatest) = bundle.cotangent;
-    let shifted = |value: f64, pad: f64| {
-        if value.is_finite() {
-            value - pad * (1.0 + value.abs())
-        } else {
-            value
-        }
-    };
-    Bundle {
-        kappa: (shifted(low, PAD), shifted(high, -PAD)),
-        cotangent: (shifted(least, PAD), shifted(greatest, -PAD)),
-    }
-}
-
-/// The least interval about two.
-fn hull(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
-    (a.0.min(b.0), a.1.max(b.1))
 }
 
 /// The angle between a ray of cotangent κ and the hole's direction, in [0, π].

@@ -20,19 +20,19 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod area;
+mod arc;
 pub mod batch;
-mod blocks;
+mod cells;
 pub mod coverage;
-mod group;
+pub mod frame;
 pub mod mask;
 pub mod needs;
+mod path;
 pub mod pixelwise;
 pub mod png;
-mod strips;
-mod tiles;
+mod projection;
 
-pub use tiles::cull;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use rayon::prelude::*;
 
@@ -88,6 +88,14 @@ fn each_pixel(
             }
         });
     Ok(pixels)
+}
+
+/// White: the disk.
+pub const WHITE: u8 = 255;
+
+/// What is behind a lock: whole at every moment here, also where a thread panicked.
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// More than curves and whatever else a frame takes beside its pixels, in bytes.

@@ -4,8 +4,7 @@ use core::f64::consts::PI;
 
 use rayon::prelude::*;
 
-use super::mask::WHITE;
-use super::{RenderError, blank};
+use super::{RenderError, WHITE, blank};
 use crate::orbit::integrate::FixedStep;
 use crate::orbit::{Event, EventKind, OrbitError, Orbits, Ray};
 use crate::scene::{Disk, Scene, View};

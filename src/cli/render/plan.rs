@@ -15,6 +15,7 @@ use super::run::draw;
 use super::{RenderArgs, ready, sequence};
 use crate::orbit::exact::Exact;
 use crate::render::batch::{Curved, Frames, RayByRay};
+use crate::render::frame::Workspace;
 use crate::render::needs::Needs;
 use crate::render::png::{self, Origin};
 use crate::scene::animation::FrameRange;
@@ -179,11 +180,11 @@ impl<'a> Plan<'a> {
     /// The most bytes that the first, the middle and the last frame take.
     fn sample(&self, frames: &impl Frames, origin: &Origin) -> anyhow::Result<u64> {
         let (first, last) = (self.frames.iter().next().unwrap_or(1), self.frames.last());
-        let mut pixels = Vec::new();
+        let (mut workspace, mut pixels) = (Workspace::default(), Vec::new());
         let mut most = 0;
         let middle = self.frames.above(first.midpoint(last)).unwrap_or(last);
         for number in [first, middle, last] {
-            frames.draw(number, true, &mut pixels)?;
+            frames.draw(number, true, &mut workspace, &mut pixels)?;
             most = most.max(self.encode(&pixels, origin)?.len() as u64);
         }
         Ok(most)

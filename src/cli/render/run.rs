@@ -186,7 +186,7 @@ impl Run<'_> {
             plan.tell_errors(&tally, report);
         }
         if plan.args.timings && drawn > 0 {
-            plan.tell_timings(&tally, method, elapsed)?;
+            plan.tell_timings(&tally, elapsed)?;
         }
         let failures = tally.failures();
         let finished = drawn + kept;

@@ -1,17 +1,13 @@
 //! What is told of frames that were drawn: how right they are, and what they took.
 
 use std::io::{self, Write};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use super::super::method::Method;
 use super::super::progress::{Report, duration};
 use super::plan::Plan;
 use super::tally::Tally;
-use crate::isoradial::{EdgeError, Isoradials, Sight};
-use crate::orbit::exact::Exact;
+use crate::isoradial::EdgeError;
 use crate::render::batch::Effort;
-use crate::render::{coverage, cull, mask};
-use crate::scene::View;
 
 impl Plan<'_> {
     /// Says what an edge may be off by where that is more than was asked for, and what would help.
@@ -64,45 +60,13 @@ impl Plan<'_> {
 
     /// Tells what the parts of the work took, all threads together. Of one picture culling and edges are told too, which are done
     /// once more by themselves for it.
-    pub(super) fn tell_timings(
-        &self,
-        tally: &Tally,
-        method: &Method,
-        elapsed: Duration,
-    ) -> anyhow::Result<()> {
+    pub(super) fn tell_timings(&self, tally: &Tally, elapsed: Duration) -> anyhow::Result<()> {
         let mut lines: Vec<(&str, Duration)> = tally.times().into();
-        if self.count == 1 {
-            let (culling, edges) = self.parts(method)?;
-            lines.splice(2..2, [("of it culling", culling), ("of it edges", edges)]);
-        }
         lines.push(("all, from the first frame to the last", elapsed));
         let mut stderr = io::stderr();
         for (name, time) in lines {
             let _ = writeln!(stderr, "{:>10}  {name}", duration(time));
         }
         Ok(())
-    }
-
-    /// What culling and edges of the first frame take, when the caches are warm and the memory is there.
-    fn parts(&self, method: &Method) -> anyhow::Result<(Duration, Duration)> {
-        let scene = &self.first;
-        let view = View::new(scene);
-        let sight = &Sight::new(scene, &view, scene.tolerance());
-        let curves = match method {
-            Method::Table(table) => Isoradials::new(sight, &table.lookup()),
-            _ => Isoradials::new(sight, &Exact),
-        };
-        let mut pixels = mask::render(&view, &curves)?;
-        let start = Instant::now();
-        cull(&view, &curves, scene.antialias(), &mut pixels)?;
-        let culled = Instant::now();
-        let stride = view.width() as usize;
-        if scene.antialias() {
-            coverage::render_into(&view, &curves, &mut pixels, stride)?;
-        } else {
-            mask::render_into(&view, &curves, &mut pixels, stride)?;
-        }
-        let culling = culled - start;
-        Ok((culling, culled.elapsed().saturating_sub(culling)))
     }
 }

@@ -4,10 +4,11 @@ use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use super::spans::Block;
-use super::{Effort, FrameError, Frames, locked, threads};
+use super::{Effort, FrameError, Frames};
 use crate::isoradial::{EdgeError, Isoradials, Sight};
 use crate::orbit::path::SweptAngles;
-use crate::render::{blank_into, coverage, mask, pixelwise};
+use crate::render::frame::{Threads, Workspace};
+use crate::render::{blank_into, locked, pixelwise};
 use crate::scene::{Animation, View};
 
 /// Frames whose pixels come from curves, and these from swept angles: of a table, or exact.
@@ -46,6 +47,7 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
         &self,
         number: u32,
         on_all_threads: bool,
+        workspace: &mut Workspace,
         pixels: &mut Vec<u8>,
     ) -> Result<Effort, FrameError> {
         let start = Instant::now();
@@ -73,13 +75,13 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
             *pixels = Vec::new();
             *pixels = pixelwise::render(&scene, &view, self.angles, &|| ())?;
         } else {
-            let render_on = if scene.antialias() {
-                coverage::render_on
+            let threads = if on_all_threads {
+                Threads::All
             } else {
-                mask::render_on
+                Threads::This
             };
             let width = view.width() as usize;
-            render_on(&view, curves, threads(on_all_threads), pixels, width)?;
+            workspace.draw(&view, curves, scene.antialias(), threads, pixels, width)?;
         }
         Ok(Effort {
             curves: drawn - start,

@@ -7,12 +7,13 @@ mod curved;
 mod ray_by_ray;
 mod spans;
 
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use super::RenderError;
-use super::tiles::Threads;
+use super::frame::Workspace;
+use super::locked;
 use crate::isoradial::EdgeError;
 use crate::scene::SceneError;
 pub use curved::Curved;
@@ -54,6 +55,7 @@ pub trait Frames: Sync {
         &self,
         number: u32,
         on_all_threads: bool,
+        workspace: &mut Workspace,
         pixels: &mut Vec<u8>,
     ) -> Result<Effort, FrameError>;
 }
@@ -111,7 +113,7 @@ pub fn draw<E: Send>(
     let numbers = Mutex::new(numbers.zip(0..));
     let failed = AtomicBool::new(false);
     let worker = || {
-        let mut pixels = Vec::new();
+        let (mut workspace, mut pixels) = (Workspace::default(), Vec::new());
         while !failed.load(Ordering::Relaxed) {
             let Some((number, place)) = locked(&numbers).next() else {
                 break;
@@ -119,7 +121,7 @@ pub fn draw<E: Send>(
             if !wanted(number) {
                 continue;
             }
-            let effort = frames.draw(number, !side_by_side, &mut pixels);
+            let effort = frames.draw(number, !side_by_side, &mut workspace, &mut pixels);
             let drawn = Drawn {
                 number,
                 place,
@@ -138,13 +140,4 @@ pub fn draw<E: Send>(
     } else {
         worker()
     }
-}
-
-fn threads(all: bool) -> Threads {
-    if all { Threads::All } else { Threads::This }
-}
-
-/// What is behind a lock, whole at every moment here.
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use super::{Effort, FrameError, Frames};
 use crate::orbit::Orbits;
+use crate::render::frame::Workspace;
 use crate::render::pixelwise;
 use crate::scene::{Animation, View};
 
@@ -26,7 +27,13 @@ impl<'a, O: Orbits> RayByRay<'a, O> {
 }
 
 impl<O: Orbits> Frames for RayByRay<'_, O> {
-    fn draw(&self, number: u32, _: bool, pixels: &mut Vec<u8>) -> Result<Effort, FrameError> {
+    fn draw(
+        &self,
+        number: u32,
+        _: bool,
+        _: &mut Workspace,
+        pixels: &mut Vec<u8>,
+    ) -> Result<Effort, FrameError> {
         let start = Instant::now();
         let scene = self.animation.frame(number)?;
         let view = View::new(&scene);

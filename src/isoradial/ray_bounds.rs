@@ -1,0 +1,143 @@
+//! Bounds of the rays that a picture shows.
+
+use core::f64::consts::PI;
+
+use crate::scene::{Affine, View};
+
+/// Bounds of a set of rays: an interval of κ, and one of `D/N`, the cotangent of φ₁ (see the [module's page](super)).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RayBounds {
+    /// Least and greatest `κ = z/s`.
+    pub kappa: (f64, f64),
+    /// Least and greatest `D/N`; ±∞ where N = 0.
+    pub cotangent: (f64, f64),
+}
+
+/// The share of its size by which each bound is widened: a pixel's own κ and x are rounded by a few ε.
+const ROUNDING: f64 = 1e-13;
+
+/// The same for the bounds of a whole picture, which take some more operations.
+const PICTURE_ROUNDING: f64 = 1e-12;
+
+impl RayBounds {
+    /// Every ray there is.
+    pub const ALL: Self = Self {
+        kappa: (f64::NEG_INFINITY, f64::INFINITY),
+        cotangent: (f64::NEG_INFINITY, f64::INFINITY),
+    };
+
+    /// The rays of a picture. `axis` is the angle between its centre and the hole's direction, `corner` that between
+    /// its centre and its corners.
+    ///
+    /// Both the picture's rectangle and the circle about its corners bound the rays; of each bound the narrower one
+    /// is taken.
+    pub fn of_picture(view: &View, axis: f64, corner: f64) -> Self {
+        let rectangle = Self::of_rectangle(view).unwrap_or_else(|| {
+            let most = view.n_a() / view.n_p().abs();
+            let cotangent = if most.is_nan() {
+                (0.0, 0.0)
+            } else {
+                (-most, most)
+            };
+            Self {
+                cotangent,
+                ..Self::ALL
+            }
+        });
+        let (widest, narrowest) = (axis + corner, axis - corner);
+        let low = cotangent_of(widest * (1.0 + PICTURE_ROUNDING));
+        let high = cotangent_of(narrowest - PICTURE_ROUNDING * axis);
+        let (least, greatest) = rectangle.cotangent;
+        Self {
+            kappa: (
+                lowered(rectangle.kappa.0.max(low), PICTURE_ROUNDING),
+                lowered(rectangle.kappa.1.min(high), -PICTURE_ROUNDING),
+            ),
+            cotangent: (
+                lowered(least, PICTURE_ROUNDING),
+                lowered(greatest, -PICTURE_ROUNDING),
+            ),
+        }
+    }
+
+    /// The rays of a picture's rectangle, from the ray at its centre and the circle of transverse parts about it that
+    /// holds those of all others. None where that circle holds the ray straight at the hole or straight away from it.
+    fn of_rectangle(view: &View) -> Option<Self> {
+        let (z, ta, tb) = (view.z(), view.ta(), view.tb());
+        let (half_x, half_y) = (view.x_at(f64::from(view.width())), view.y_at(0.0));
+        let reach = |part: Affine| (part.per_x * half_x).abs() + (part.per_y * half_y).abs();
+        let s = (ta.at_centre * ta.at_centre + tb.at_centre * tb.at_centre).sqrt();
+        let (reach_a, reach_b) = (reach(ta), reach(tb));
+        let radius = (reach_a * reach_a + reach_b * reach_b).sqrt();
+        let (s_least, s_most) = (s - radius, s + radius);
+        if s_least <= 0.0 {
+            return None;
+        }
+        let (z_least, z_most) = (z.at_centre - reach(z), z.at_centre + reach(z));
+        let kappa = (
+            z_least / if z_least < 0.0 { s_least } else { s_most },
+            z_most / if z_most < 0.0 { s_most } else { s_least },
+        );
+        // The gradient of t_a/s is |t_b|/s² ≤ 1/s.
+        let (cosine, spread) = (ta.at_centre / s, radius / s_least);
+        let (least, most) = ((cosine - spread).max(-1.0), (cosine + spread).min(1.0));
+        let (n, d) = (view.n_p().abs(), view.plane_slope());
+        let over_n = |d: f64| {
+            if n > 0.0 {
+                d / n
+            } else {
+                f64::INFINITY.copysign(d)
+            }
+        };
+        let ends = (over_n(d * least), over_n(d * most));
+        let cotangent = if d < 0.0 { (ends.1, ends.0) } else { ends };
+        Some(Self { kappa, cotangent })
+    }
+
+    /// The least bounds that hold both sets of rays.
+    pub(super) fn union(&self, other: &Self) -> Self {
+        let hull = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
+        Self {
+            kappa: hull(self.kappa, other.kappa),
+            cotangent: hull(self.cotangent, other.cotangent),
+        }
+    }
+
+    /// The interval of x that the rays reach in each quarter turn, if they do.
+    pub(super) fn quarters(&self) -> [Option<(f64, f64)>; 2] {
+        let (least, greatest) = self.cotangent;
+        // x falls with the cotangent in the first quarter turn and rises with its size in the second.
+        let first =
+            (greatest >= 0.0).then(|| (1.0 / (1.0 + greatest), 1.0 / (1.0 + least.max(0.0))));
+        let beyond = |cotangent: f64| {
+            if cotangent.is_infinite() {
+                1.0
+            } else {
+                cotangent / (1.0 + cotangent)
+            }
+        };
+        let second = (least < 0.0).then(|| (beyond(-greatest.min(0.0)), beyond(-least)));
+        let widened = |x: (f64, f64)| ((x.0 - ROUNDING).max(0.0), (x.1 + ROUNDING).min(1.0));
+        [first.map(widened), second.map(widened)]
+    }
+}
+
+/// κ at an angle from the hole's direction.
+fn cotangent_of(psi: f64) -> f64 {
+    if psi <= 0.0 {
+        f64::INFINITY
+    } else if psi >= PI {
+        f64::NEG_INFINITY
+    } else {
+        libm::cos(psi) / libm::sin(psi)
+    }
+}
+
+/// A bound lowered by a share of its size, or raised where the share is negative.
+fn lowered(bound: f64, share: f64) -> f64 {
+    if bound.is_finite() {
+        bound - share * (1.0 + bound.abs())
+    } else {
+        bound
+    }
+}

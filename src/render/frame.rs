@@ -1,0 +1,306 @@
+//! A frame from its outline: in bands of rows, each by one thread.
+
+use std::sync::Mutex;
+
+use rayon::prelude::*;
+
+use super::arc::Arc;
+use super::cells::{Cells, ONE, fixed};
+use super::path::Path;
+use super::projection::Projection;
+use super::{RenderError, WHITE};
+use crate::isoradial::{Boundary, Isoradials};
+use crate::scene::View;
+
+/// How far an arc may be off its edge where the shares of pixels are drawn, in pixels.
+const SMOOTH: f64 = 1.0 / 512.0;
+
+/// How far an arc may be off its edge where pixels show what their centres see, in pixels. Centres within twice that of
+/// the arc are asked themselves.
+const HARD: f64 = 1.0 / 200.0;
+
+/// Memory for the cells of a band, in bytes: what the nearer caches hold.
+const BAND: usize = 1 << 20;
+
+/// Who draws a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Threads {
+    /// All threads of the current rayon pool.
+    All,
+    /// This thread alone.
+    This,
+}
+
+/// The memory that frames are drawn with. Once it has drawn a frame, another one like it takes no more.
+#[derive(Debug, Default)]
+pub struct Workspace {
+    path: Path,
+    /// Of each band, the arcs that pass it.
+    arcs_of: Vec<Vec<u32>>,
+    /// One for each thread.
+    scratch: Vec<Scratch>,
+}
+
+/// What a thread draws a band with.
+#[derive(Debug, Default)]
+struct Scratch {
+    cells: Cells,
+    /// Pixels of the band whose centres are too near to an arc: column and row.
+    doubtful: Vec<(u32, u32)>,
+    /// The path's steps within the band: the first row that lies wholly below, and the weight.
+    steps: Vec<(usize, i32)>,
+}
+
+/// A frame that is being drawn.
+struct Frame<'a> {
+    view: &'a View,
+    curves: &'a Isoradials,
+    smooth: bool,
+    /// How near to an arc a pixel's centre is doubtful.
+    doubt: f64,
+    path: &'a Path,
+    arcs_of: &'a [Vec<u32>],
+    /// The winding number along the picture's left side, but for the path's steps.
+    left: i32,
+    width: usize,
+    height: usize,
+    /// Rows of a band.
+    rows: usize,
+    stride: usize,
+}
+
+impl Workspace {
+    /// Draws a frame: row j begins at `j stride` of `pixels`. With `smooth` each pixel is the share of its square that
+    /// the disk covers, else white where its centre sees the disk. What lies between the rows' ends stays as it is.
+    ///
+    /// # Errors
+    /// [`RenderError::Buffer`] for a stride or a buffer that the frame does not fit.
+    pub fn draw(
+        &mut self,
+        view: &View,
+        curves: &Isoradials,
+        smooth: bool,
+        threads: Threads,
+        pixels: &mut [u8],
+        stride: usize,
+    ) -> Result<(), RenderError> {
+        let (width, height) = (view.width() as usize, view.height() as usize);
+        let needed = stride.saturating_mul(height - 1).saturating_add(width);
+        if stride < width || pixels.len() < needed {
+            return Err(RenderError::Buffer {
+                width,
+                height,
+                stride,
+                bytes: pixels.len(),
+            });
+        }
+        let projection = Projection::new(view, curves);
+        let tolerance = if smooth { SMOOTH } else { HARD };
+        self.path.draw(&projection, tolerance, covers);
+        let rows = (BAND / (size_of::<i32>() * width)).clamp(1, height);
+        self.sort(height, rows);
+        let frame = Frame {
+            view,
+            curves,
+            smooth,
+            doubt: 2.0 * (tolerance + curves.error().rounding) + 2.0 / f64::from(ONE),
+            path: &self.path,
+            arcs_of: &self.arcs_of,
+            left: left(&self.path, view, curves),
+            width,
+            height,
+            rows,
+            stride,
+        };
+        // No wrap: `needed` fits, and so does what is rounded down to rows.
+        let bands = pixels[..needed]
+            .chunks_mut(stride.saturating_mul(rows))
+            .enumerate();
+        let count = if threads == Threads::All {
+            rayon::current_num_threads()
+        } else {
+            1
+        };
+        self.scratch
+            .resize_with(self.scratch.len().max(count), Scratch::default);
+        if count == 1 {
+            let scratch = &mut self.scratch[0];
+            bands.for_each(|(band, pixels)| frame.draw(band, pixels, scratch));
+        } else {
+            let bands = Mutex::new(bands);
+            let next = || super::locked(&bands).next();
+            self.scratch[..count].par_iter_mut().for_each(|scratch| {
+                while let Some((band, pixels)) = next() {
+                    frame.draw(band, pixels, scratch);
+                }
+            });
+        }
+        Ok(())
+    }
+
+    /// Sorts the path's arcs into bands.
+    fn sort(&mut self, height: usize, rows: usize) {
+        let bands = height.div_ceil(rows);
+        self.arcs_of
+            .resize_with(self.arcs_of.len().max(bands), Vec::new);
+        for arcs in &mut self.arcs_of {
+            arcs.clear();
+        }
+        for (i, arc) in self.path.arcs.iter().enumerate() {
+            let (first, last) = arc.rows();
+            let band = |row: f64| (row.max(0.0) as usize).min(height - 1) / rows;
+            for arcs in &mut self.arcs_of[band(first)..=band(last + 1.0 / f64::from(ONE))] {
+                arcs.push(i as u32);
+            }
+        }
+    }
+}
+
+/// How much more of the disk there is on the inner side of a boundary than on the other.
+fn covers(boundary: &Boundary) -> i32 {
+    i32::from(boundary.above.is_some()) - i32::from(boundary.below.is_some())
+}
+
+impl Frame<'_> {
+    /// Draws a band.
+    fn draw(&self, band: usize, pixels: &mut [u8], scratch: &mut Scratch) {
+        let top = band * self.rows;
+        let rows = self.rows.min(self.height - top);
+        let cells = &mut scratch.cells;
+        cells.set(self.width, top, rows);
+        scratch.doubtful.clear();
+        for &arc in &self.arcs_of[band] {
+            let arc = &self.path.arcs[arc as usize];
+            if self.smooth {
+                cells.cover(arc);
+            } else {
+                cells.cross(arc, self.doubt, &mut scratch.doubtful);
+            }
+        }
+        let mut left = self.left;
+        scratch.steps.clear();
+        for step in &self.path.steps {
+            let first = if self.smooth {
+                cells.cover_below(step.y, step.weight)
+            } else {
+                cells.first_below(step.y)
+            };
+            if first <= 0 {
+                left += step.weight;
+            } else if first < rows as i64 {
+                scratch.steps.push((first as usize, step.weight));
+            }
+        }
+        scratch.steps.sort_unstable();
+        let mut steps = scratch.steps.iter().peekable();
+        for row in 0..rows {
+            while let Some((_, weight)) = steps.next_if(|&&(first, _)| first <= row) {
+                left += weight;
+            }
+            let pixels = &mut pixels[row * self.stride..][..self.width];
+            fill_row(cells, row, left * ONE, pixels);
+        }
+        for &(column, row) in &scratch.doubtful {
+            let (column, row) = (column as usize, row as usize);
+            let is_white = super::mask::sees(
+                self.view,
+                self.curves,
+                (column as f64 + 0.5, (top + row) as f64 + 0.5),
+            );
+            pixels[row * self.stride + column] = if is_white { WHITE } else { 0 };
+        }
+    }
+}
+
+/// Fills a row of pixels with their shares.
+fn fill_row(cells: &mut Cells, row: usize, left: i32, pixels: &mut [u8]) {
+    pixels.fill(0);
+    let pixels = core::cell::Cell::from_mut(pixels).as_slice_of_cells();
+    cells.walk(
+        row,
+        left,
+        |from, to, share| {
+            if share > 0 {
+                let value = grey(share);
+                for pixel in &pixels[from..to] {
+                    pixel.set(value);
+                }
+            }
+        },
+        |column, share| pixels[column].set(grey(share)),
+    );
+}
+
+/// A share as a grey, to the nearest.
+fn grey(share: i32) -> u8 {
+    ((share * i32::from(WHITE) + ONE / 2) / ONE) as u8
+}
+
+/// The winding number along the picture's left side, but for the path's steps: that of one pixel, far from the path,
+/// which is asked what its centre sees, less all that the path adds on the way to it.
+fn left(path: &Path, view: &View, curves: &Isoradials) -> i32 {
+    /// Pixels that are looked at, at most.
+    const MOST: u32 = 24;
+    /// As far from the path as is wanted, in pixels.
+    const FAR: f64 = 2.0;
+    // Places spread over the picture, the first one in its middle (Roberts 2018: the plastic number's powers).
+    let place = |i: u32, share: f64, size: u32| {
+        let place = (0.5 + f64::from(i) * share).fract();
+        ((place * f64::from(size)) as u32).min(size - 1)
+    };
+    let mut best = (-1.0, (0, 0));
+    for i in 0..MOST {
+        let pixel = (
+            place(i, 0.754_877_666_246_692_8, view.width()),
+            place(i, 0.569_840_290_998_053_3, view.height()),
+        );
+        let distance = distance(path, centre(pixel));
+        if distance > best.0 {
+            best = (distance, pixel);
+        }
+        if distance > FAR {
+            break;
+        }
+    }
+    let centre = centre(best.1);
+    i32::from(super::mask::sees(view, curves, centre)) - winding(path, centre)
+}
+
+fn centre((column, row): (u32, u32)) -> (f64, f64) {
+    (f64::from(column) + 0.5, f64::from(row) + 0.5)
+}
+
+/// How far a place is from the path, about: along rows for steep arcs and along columns for flat ones.
+fn distance(path: &Path, (x, y): (f64, f64)) -> f64 {
+    path.arcs.iter().fold(f64::INFINITY, |least, arc| {
+        let (u, v) = if arc.steep { (y, x) } else { (x, y) };
+        let nearest = u.clamp(arc.u.0, arc.u.1);
+        least.min((u - nearest).abs().max((v - arc.at(nearest)).abs()))
+    })
+}
+
+/// How much the path adds to the winding number along the picture's left side down to a place, and right to it.
+fn winding(path: &Path, (x, y): (f64, f64)) -> i32 {
+    let is_below = |place: f64| i32::from(fixed(place) > fixed(y));
+    let steps = path
+        .steps
+        .iter()
+        .map(|step| step.weight * (1 - is_below(step.y)));
+    let arcs = path.arcs.iter().map(|arc: &Arc| {
+        let passes = if arc.steep {
+            let passes = is_below(arc.u.1) - is_below(arc.u.0);
+            if passes != 0 && arc.at(y) < x {
+                passes
+            } else {
+                0
+            }
+        } else if arc.u.0 < x {
+            let last = if arc.u.1 <= x { arc.v.1 } else { arc.at(x) };
+            is_below(last) - is_below(arc.v.0)
+        } else {
+            0
+        };
+        arc.weight * passes
+    });
+    steps.chain(arcs).sum()
+}

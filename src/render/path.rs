@@ -1,0 +1,344 @@
+//! The outline of the disk's image in one view, as arcs.
+//!
+//! # The path
+//! Each boundary of each sector of the curves (see [`crate::isoradial`]) is walked from azimuth to azimuth, twice: once
+//! on either side of the line from the hole along â. Where the boundaries change, radial lines lead from one to the
+//! next, so that the path is closed. Then the disk is where the path winds around once.
+//!
+//! Nothing is closed off the picture. A part that is beyond one of the picture's sides is left out, and the path may
+//! begin and end anywhere out there. What that changes is how the disk lies along the picture's left side:
+//! an arc's end that is left of it stands in for all that was left out, as a [`Step`].
+//!
+//! # What is beyond a side
+//! Of each side there is a linear form of `(κ, cos α, sin α)` that is negative beyond it, whether ahead of the camera or
+//! behind. Over a wedge of azimuths between two places, the transverse part `(cos α, sin α)` is at most `1 − cos(Δ/2)`
+//! off its chord, and κ at most `max|h″| δ²/8` off its own over the wedge's x, of length δ; where `f = x h` is
+//! kept, h lies between its ends but for `max|f″| δ²/8` over the lesser x. So the form is at most the sum of its parts'
+//! greatest values at the ends and of their sizes times these. Where that is negative, no ray of the wedge's curve is
+//! in the picture. A wedge of which some part is behind the camera is halved until each half is ahead or beyond a side.
+
+use super::arc::Arc;
+use super::projection::{Azimuth, Place, Projection, Quadrant};
+use crate::isoradial::{Boundary, Sector};
+
+/// The cosine of the widest wedge that is drawn as one arc: an eighth of a right angle to either side of its middle.
+const WIDEST: f64 = 0.923_879_532_511_286_8;
+
+/// How often a wedge is halved at most. What is left is as narrow as rounding.
+const DEEPEST: u32 = 60;
+
+/// Arcs are made of places ahead of the camera, none of them so much as this factor closer to its plane than another.
+const PERSPECTIVE: f64 = 8.0;
+
+/// Shorter than this, in pixels, a part of an edge is a straight line.
+const SHORT: f64 = 1.0 / 1024.0;
+
+/// Ends of arcs this near to the picture's left side, in pixels, count as beyond it: the path may end on the side
+/// itself, up to rounding. Two arcs that meet so near to it leave steps that cancel.
+const AT_LEFT: f64 = 0.25;
+
+/// Where the disk begins or ends along the picture's left side, going down.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Step {
+    /// Rows from the top.
+    pub(super) y: f64,
+    /// How much more of the disk there is from there on: 1 or −1.
+    pub(super) weight: i32,
+}
+
+/// The outline of the disk's image in the picture.
+#[derive(Debug, Default)]
+pub(super) struct Path {
+    pub(super) arcs: Vec<Arc>,
+    pub(super) steps: Vec<Step>,
+    /// The ends of boundaries at this junction and at the next: azimuths at which the boundaries change.
+    junction: Vec<End>,
+    next_junction: Vec<End>,
+}
+
+/// Where a boundary ends at a junction.
+#[derive(Debug, Clone, Copy)]
+struct End {
+    kappa: f64,
+    /// `(w, w x, w y)`.
+    seen: [f64; 3],
+    /// The boundary's weight where it ends there, the opposite where it begins there.
+    weight: i32,
+}
+
+impl Path {
+    /// Draws the outline in a view, right to `tolerance` pixels. `weight` tells how much more of what is drawn there is
+    /// on the greater κ's side of a boundary than on the other: 1, 0 or −1.
+    pub(super) fn draw(
+        &mut self,
+        projection: &Projection<'_>,
+        tolerance: f64,
+        weight: impl Fn(&Boundary) -> i32,
+    ) {
+        self.arcs.clear();
+        self.steps.clear();
+        let mut pen = Pen {
+            projection,
+            sides: projection.sides(),
+            tolerance,
+            path: self,
+        };
+        for across in [1.0, -1.0] {
+            pen.half_turn(across, &weight);
+        }
+    }
+}
+
+/// Draws a path.
+struct Pen<'a> {
+    projection: &'a Projection<'a>,
+    sides: [[f64; 3]; 4],
+    tolerance: f64,
+    path: &'a mut Path,
+}
+
+/// A boundary that is walked, and the weight of its arcs.
+#[derive(Clone, Copy)]
+struct Track<'a> {
+    quadrant: Quadrant,
+    boundary: &'a Boundary,
+    weight: i32,
+}
+
+impl Pen<'_> {
+    /// Walks half a turn about the hole, from one end of the line along â to the other: through one quarter turn of φ₁
+    /// to the border, and through the other from there on.
+    fn half_turn(&mut self, across: f64, weight: &impl Fn(&Boundary) -> i32) {
+        let projection = self.projection;
+        let [first, second] = projection.quadrants(across);
+        // Up to the border β falls.
+        let side = -projection.handedness(first);
+        let mut end_before = None;
+        for (quadrant, rises) in [(first, false), (second, true)] {
+            let sectors = projection.curves.sectors(quadrant.quarter);
+            // x falls with β in the first quarter turn.
+            let by_rising_x = rises == (quadrant.quarter == 1);
+            for i in 0..sectors.len() {
+                let sector = &sectors[if by_rising_x {
+                    i
+                } else {
+                    sectors.len() - 1 - i
+                }];
+                let Some([near, far]) = azimuths(projection, quadrant.quarter, sector) else {
+                    continue;
+                };
+                let (from, to) = if rises { (near, far) } else { (far, near) };
+                self.path.next_junction.clear();
+                for boundary in &sector.boundaries {
+                    let weight = side * weight(boundary);
+                    if weight != 0 && !projection.is_at_the_camera(quadrant, boundary) {
+                        self.track(
+                            Track {
+                                quadrant,
+                                boundary,
+                                weight,
+                            },
+                            from,
+                            to,
+                        );
+                    }
+                }
+                if end_before == Some(from) {
+                    self.join();
+                }
+                core::mem::swap(&mut self.path.junction, &mut self.path.next_junction);
+                end_before = Some(to);
+            }
+        }
+        self.path.junction.clear();
+    }
+
+    /// Joins the ends at a junction by radial lines.
+    ///
+    /// An arc of weight w from A to B leaves −w at A and w at B. Lines from each end to the next by κ, each with the sum
+    /// of the weights so far, leave nothing anywhere.
+    fn join(&mut self) {
+        self.path
+            .junction
+            .sort_by(|a, b| a.kappa.total_cmp(&b.kappa));
+        let mut weight = 0;
+        for i in 1..self.path.junction.len() {
+            let [a, b] = [self.path.junction[i - 1], self.path.junction[i]];
+            weight += a.weight;
+            if weight != 0 && a.seen != b.seen {
+                self.line(a.seen, b.seen, weight, 0);
+            }
+        }
+        self.path.junction.clear();
+    }
+
+    /// Draws a line between two points, each `(w, w x, w y)`.
+    fn line(&mut self, a: [f64; 3], b: [f64; 3], weight: i32, depth: u32) {
+        let (width, height) = (self.projection.width, self.projection.height);
+        let beyond = |[w, wx, wy]: [f64; 3]| [wx < 0.0, width * w < wx, wy < 0.0, height * w < wy];
+        if beyond(a).into_iter().zip(beyond(b)).any(|(a, b)| a && b) || depth > DEEPEST {
+            return;
+        }
+        if is_level(&[a[0], b[0]]) {
+            let point = |[w, wx, wy]: [f64; 3]| (wx / w, wy / w);
+            if let Some(arc) = Arc::straight(point(a), point(b), weight) {
+                self.push(&arc);
+            }
+            return;
+        }
+        let unit = |p: [f64; 3]| {
+            let length = (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]).sqrt();
+            p.map(|part| part / length)
+        };
+        let (a, b) = (unit(a), unit(b));
+        let middle = core::array::from_fn(|i| a[i] + b[i]);
+        self.line(a, middle, weight, depth + 1);
+        self.line(middle, b, weight, depth + 1);
+    }
+
+    /// Draws a boundary between two azimuths.
+    fn track(&mut self, track: Track<'_>, from: Azimuth, to: Azimuth) {
+        let place = |azimuth| {
+            self.projection
+                .place(track.quadrant, track.boundary, azimuth)
+        };
+        let (from, to) = (place(from), place(to));
+        let end = |place: &Place, weight| End {
+            kappa: place.kappa,
+            seen: place.seen,
+            weight,
+        };
+        self.path.junction.push(end(&from, -track.weight));
+        self.path.next_junction.push(end(&to, track.weight));
+        self.wedge(track, &from, &to, 0);
+    }
+
+    /// Draws a boundary between two places on it.
+    fn wedge(&mut self, track: Track<'_>, from: &Place, to: &Place, depth: u32) {
+        if self.is_beyond(track, from, to) {
+            return;
+        }
+        let ahead = is_level(&[from.seen[0], to.seen[0]]);
+        if depth > DEEPEST || (ahead && (from.x - to.x).abs().max((from.y - to.y).abs()) <= SHORT) {
+            if let Some(arc) =
+                Arc::straight((from.x, from.y), (to.x, to.y), track.weight).filter(|_| ahead)
+            {
+                self.push(&arc);
+            }
+            return;
+        }
+        let azimuth = from.azimuth.between(to.azimuth);
+        let middle = self
+            .projection
+            .place(track.quadrant, track.boundary, azimuth);
+        let arc = if ahead
+            && from.azimuth.cosine_to(to.azimuth) >= WIDEST
+            && is_level(&[from.seen[0], middle.seen[0], to.seen[0]])
+        {
+            Arc::new(from, &middle, to, track.weight, self.tolerance)
+        } else {
+            None
+        };
+        if let Some(arc) = arc {
+            self.push(&arc);
+        } else {
+            self.wedge(track, from, &middle, depth + 1);
+            self.wedge(track, &middle, to, depth + 1);
+        }
+    }
+
+    /// Whether all of a boundary between two places is beyond one of the picture's sides: see the
+    /// [module's page](self).
+    fn is_beyond(&self, track: Track<'_>, from: &Place, to: &Place) -> bool {
+        let ([w0, x0, y0], [w1, x1, y1]) = (from.seen, to.seen);
+        let (width, height) = (self.projection.width, self.projection.height);
+        let beyond = [
+            x0 < 0.0 && x1 < 0.0,
+            width * w0 < x0 && width * w1 < x1,
+            y0 < 0.0 && y1 < 0.0,
+            height * w0 < y0 && height * w1 < y1,
+        ];
+        if !beyond.contains(&true) {
+            return false;
+        }
+        let piece = &self.projection.curves.quarter(track.quadrant.quarter)[track.boundary.piece];
+        let x = (from.axis.min(to.axis), from.axis.max(to.axis));
+        let off_chord = 0.125 * piece.bend(track.boundary.edge, x) * (x.1 - x.0) * (x.1 - x.0);
+        let kappa_off = if piece.has_pole() {
+            off_chord / x.0
+        } else {
+            off_chord
+        };
+        // 1 − cos(Δ/2) = sin²(Δ/2)/(1 + cos(Δ/2)) ≤ (1 − cos Δ)/2.
+        let across_off = 0.5 * (1.0 - from.azimuth.cosine_to(to.azimuth)).max(0.0);
+        let direction = |place: &Place| {
+            self.projection
+                .direction(track.quadrant, place.azimuth, place.kappa)
+        };
+        let (from, to) = (direction(from), direction(to));
+        self.sides.iter().zip(beyond).any(|(side, beyond)| {
+            let radial = (side[0] * from[0]).max(side[0] * to[0]) + side[0].abs() * kappa_off;
+            let along = |direction: [f64; 3]| side[1] * direction[1] + side[2] * direction[2];
+            let size = (side[1] * side[1] + side[2] * side[2]).sqrt();
+            beyond && radial + along(from).max(along(to)) + size * across_off < 0.0
+        })
+    }
+
+    /// Adds an arc, if it is in the picture.
+    fn push(&mut self, arc: &Arc) {
+        let (rows, columns) = (arc.rows(), arc.columns());
+        let (width, height) = (self.projection.width, self.projection.height);
+        if rows.1 < 0.0 || rows.0 > height || columns.1 < 0.0 || columns.0 > width {
+            return;
+        }
+        self.path.arcs.push(*arc);
+        let [first, last] = arc.ends();
+        // The path comes up along the left side to an arc that begins beyond it, and goes down where one ends there.
+        for ((x, y), weight) in [(first, -arc.weight), (last, arc.weight)] {
+            if x <= AT_LEFT {
+                self.path.steps.push(Step { y, weight });
+            }
+        }
+    }
+}
+
+/// The azimuths of a sector that the view has, the one nearer to the border first. None if it has none.
+fn azimuths(projection: &Projection<'_>, quarter: usize, sector: &Sector) -> Option<[Azimuth; 2]> {
+    let (least, greatest) = projection.reach(quarter);
+    let (low, high) = (sector.x.0.max(least), sector.x.1.min(greatest));
+    if low > high {
+        return None;
+    }
+    if least == greatest {
+        // Seen from the disk's plane or its axis x is the same all round.
+        return Some([Azimuth::BORDER, Azimuth::FARTHEST]);
+    }
+    // A sector that the view only touches has no azimuths.
+    let at = |x: f64| {
+        let (border, farthest) = if quarter == 0 {
+            (greatest, least)
+        } else {
+            (least, greatest)
+        };
+        if x == border {
+            Azimuth::BORDER
+        } else if x == farthest {
+            Azimuth::FARTHEST
+        } else {
+            projection.azimuth_at(quarter, x)
+        }
+    };
+    let (near, far) = if quarter == 0 {
+        (high, low)
+    } else {
+        (low, high)
+    };
+    (low < high).then(|| [at(near), at(far)])
+}
+
+/// Whether places are ahead of the camera, and none is much nearer to its plane than another.
+fn is_level(w: &[f64]) -> bool {
+    let least = w.iter().copied().fold(f64::INFINITY, f64::min);
+    let greatest = w.iter().copied().fold(0.0, f64::max);
+    least > 0.0 && greatest <= PERSPECTIVE * least
+}
