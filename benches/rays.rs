@@ -10,7 +10,7 @@ use darkness::orbit::integrate::{Adaptive, FixedStep, Scheme};
 use darkness::orbit::invariants::{Orbit, Point};
 use darkness::orbit::path::SweptAngles;
 use darkness::orbit::{Orbits, Ray};
-use darkness::table::{Spec, generate};
+use darkness::table::{Spec, Table};
 use interleaved::{Contender, compare};
 
 const RAYS: usize = 4096;
@@ -42,7 +42,7 @@ fn rays(narrowest: f64, widest: f64) -> Vec<(Ray, Orbit, Point)> {
 fn main() {
     let tables: Vec<_> = Spec::NAMES
         .iter()
-        .filter_map(|name| generate(&Spec::named(name)?, &|_, _| ()))
+        .filter_map(|name| Table::generate(&Spec::named(name)?).ok())
         .collect();
     for (title, narrowest, widest) in [
         ("rays that cross r = 6, 0 < b < 6.5", 0.0, 6.5),
@@ -85,7 +85,7 @@ fn main() {
 /// The whole question, fate and end included: what the integrators cannot help answering.
 fn whole_rays(rays: &[(Ray, Orbit, Point)]) {
     let rays = &rays[..512];
-    let Some(table) = Spec::named("standard").and_then(|spec| generate(&spec, &|_, _| ())) else {
+    let Ok(table) = Table::generate(&Spec::standard()) else {
         return;
     };
     let follow = |orbits: &dyn Orbits| -> f64 {

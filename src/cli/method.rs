@@ -5,12 +5,12 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use memmap2::Mmap;
 
 use super::Misuse;
 use super::progress::{Report, warn};
+use super::remedy::with_remedy;
 use crate::orbit::integrate::Adaptive;
-use crate::table::{self, Lookup, Memory, Metadata, Spec, Table, TableError};
+use crate::table::{self, Spec, SpecError, Table, TableError};
 
 /// The table that is good for rays of all kinds.
 pub(super) const DEFAULT_TABLE: &str = "standard";
@@ -72,43 +72,11 @@ pub(super) enum Checked {
 /// A method, ready to follow rays.
 #[derive(Debug)]
 pub(super) enum Method {
-    Table(AnyTable),
+    Table(Table),
     /// In place of a table, where no table is good enough.
     NoTable,
     Exact,
     Integrate(Adaptive),
-}
-
-/// A table: a file that is mapped, or numbers in memory.
-#[derive(Debug)]
-pub(super) enum AnyTable {
-    Mapped(Table<Mmap>),
-    Held(Table<Memory>),
-}
-
-impl AnyTable {
-    /// The table, ready for lookups.
-    pub(super) fn lookup(&self) -> Lookup<'_> {
-        match self {
-            Self::Mapped(table) => table.lookup(),
-            Self::Held(table) => table.lookup(),
-        }
-    }
-
-    /// The table's file.
-    pub(super) fn bytes(&self) -> &[u8] {
-        match self {
-            Self::Mapped(table) => table.bytes(),
-            Self::Held(table) => table.bytes(),
-        }
-    }
-
-    pub(super) fn metadata(&self) -> &Metadata {
-        match self {
-            Self::Mapped(table) => table.metadata(),
-            Self::Held(table) => table.metadata(),
-        }
-    }
 }
 
 impl MethodArgs {
@@ -136,9 +104,9 @@ impl MethodArgs {
                     return Ok(Checked::Ready(Method::NoTable));
                 };
                 let opened = if self.no_mmap {
-                    table::read(&place.path).map(AnyTable::Held)
+                    Table::read(&place.path)
                 } else {
-                    table::open(&place.path).map(AnyTable::Mapped)
+                    Table::open(&place.path)
                 };
                 match (opened, needed) {
                     (Ok(table), _) => Method::Table(table),
@@ -149,10 +117,11 @@ impl MethodArgs {
                     }
                     (Err(error), _) if place.origin == Origin::Variable => {
                         anyhow::bail!(
-                            "{error} (the environment's {TABLE_VARIABLE} names this file)"
+                            "{} (the environment's {TABLE_VARIABLE} names this file)",
+                            with_remedy(&error)
                         )
                     }
-                    (Err(error), _) => return Err(error.into()),
+                    (Err(error), _) => return Err(with_remedy(&error)),
                 }
             }
         };
@@ -198,11 +167,11 @@ impl Checked {
     /// The method, if nothing is missing.
     ///
     /// # Errors
-    /// [`TableError::Missing`]
-    pub(super) fn without_making(self) -> Result<Method, TableError> {
+    /// A table that is missing.
+    pub(super) fn without_making(self) -> anyhow::Result<Method> {
         match self {
             Self::Ready(method) => Ok(method),
-            Self::TableMissing { path, .. } => Err(TableError::Missing { path }),
+            Self::TableMissing { path, .. } => Err(with_remedy(&TableError::Missing { path })),
         }
     }
 
@@ -220,7 +189,7 @@ impl Checked {
             path.display()
         ));
         let table = make(&spec(name)?, report)?;
-        if let Err(error) = table::save(&table, &path) {
+        if let Err(error) = table.save(&path) {
             let reason = match error {
                 TableError::Unwritable { source, .. } => source.to_string(),
                 other => other.to_string(),
@@ -230,7 +199,7 @@ impl Checked {
                 path.display()
             ));
         }
-        Ok(Method::Table(AnyTable::Held(table)))
+        Ok(Method::Table(table))
     }
 }
 
@@ -286,21 +255,15 @@ pub(super) fn spec(name: &str) -> anyhow::Result<Spec> {
     })
 }
 
-/// Makes a table, with a bar.
+/// Makes a table and shows a progress bar.
 ///
 /// # Errors
-/// A grid that no table can have.
-pub(super) fn make(spec: &Spec, report: Report) -> anyhow::Result<Table<Memory>> {
+/// A specification that no table can have.
+pub(super) fn make(spec: &Spec, report: Report) -> Result<Table, SpecError> {
     let bar = report.bar(0, "making the table", "rows");
-    let made = table::generate(spec, &|_, total| {
+    Table::generate_with_progress(spec, &|_, total| {
         bar.set_length(total);
-        // Threads finish rows in any order; counted here, the bar never runs backwards.
+        // Threads finish rows in any order. Counted here, the bar never runs backwards.
         bar.inc(1);
-    });
-    made.ok_or_else(|| {
-        anyhow::anyhow!(
-            "the table {} asks for a grid that no table can have",
-            spec.name
-        )
     })
 }

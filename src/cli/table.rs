@@ -10,8 +10,9 @@ use serde::Serialize;
 
 use super::method::{self, DEFAULT_TABLE};
 use super::progress::{Report, duration};
+use super::remedy::with_remedy;
 use super::{Misuse, StdoutError, Threads, start_threads, target};
-use crate::table::{self, Metadata, Nodes, Spec, TableError, format};
+use crate::table::{self, ChartNodes, Metadata, Spec, Table, TableError, format};
 
 /// Make a table of all light rays, or inspect or verify one
 ///
@@ -86,7 +87,7 @@ fn make(args: &TableArgs, report: Report) -> anyhow::Result<()> {
     let start = Instant::now();
     let table = method::make(&spec, report)?;
     let time = duration(start.elapsed());
-    table::save(&table, &path)?;
+    table.save(&path).map_err(|error| with_remedy(&error))?;
     report.note(format_args!(
         "{}: table {}, {} bytes, error {:.1e}, made in {time}",
         path.display(),
@@ -103,7 +104,7 @@ fn make(args: &TableArgs, report: Report) -> anyhow::Result<()> {
 /// Something else is there.
 fn is_made(path: &Path, spec: &Spec) -> anyhow::Result<bool> {
     let place = path.display();
-    match table::open(path) {
+    match Table::open(path) {
         Ok(found) if found.metadata().spec == *spec => Ok(true),
         Ok(found) => anyhow::bail!(
             "{place}: another table, {}, is there already; --force replaces it",
@@ -133,10 +134,10 @@ struct Inspection<'a> {
 /// Nodes of each chart.
 #[derive(Debug, Serialize)]
 struct Grid {
-    critical: Nodes,
-    weak: Nodes,
-    trapped: Nodes,
-    radial: Nodes,
+    critical: ChartNodes,
+    weak: ChartNodes,
+    trapped: ChartNodes,
+    radial: ChartNodes,
 }
 
 impl<'a> Inspection<'a> {
@@ -176,7 +177,7 @@ impl<'a> Inspection<'a> {
             ("trapped", self.grid.trapped),
             ("radial", self.grid.radial),
         ];
-        for (name, Nodes { place, orbit }) in charts {
+        for (name, ChartNodes { place, orbit }) in charts {
             writeln!(out, "{name:<16} {place} × {orbit} nodes (place × orbit)")?;
         }
         Ok(())
@@ -184,7 +185,7 @@ impl<'a> Inspection<'a> {
 }
 
 fn inspect(file: &Path, json: bool) -> anyhow::Result<()> {
-    let table = table::open(file)?;
+    let table = Table::open(file).map_err(|error| with_remedy(&error))?;
     let inspection = Inspection::new(table.metadata(), table.bytes().len());
     let mut stdout = io::stdout().lock();
     let printed = if json {
@@ -198,7 +199,7 @@ fn inspect(file: &Path, json: bool) -> anyhow::Result<()> {
 }
 
 fn verify(file: &Path, report: Report) -> anyhow::Result<()> {
-    let table = table::open(file)?;
+    let table = Table::open(file).map_err(|error| with_remedy(&error))?;
     let metadata = table.metadata();
     let anew = method::make(&metadata.spec, report)?;
     let measured = table::measure(&metadata.spec, &table.lookup());

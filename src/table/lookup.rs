@@ -1,88 +1,79 @@
 //! Swept angles read from a table.
 
-use core::marker::PhantomData;
-
-use super::charts::{CRITICAL_B, CRITICAL_POLE, LOWER_E2, TRAPPED_POLE, UPPER_E2};
-use super::interpolation::{Cubic, Interpolation};
-use super::logarithm::ln_ratio;
-use super::spec::{Axes, Spec};
-use super::spline::Scale;
-use crate::orbit::invariants::{Family, Orbit, Point, three_u_minus_two};
-use crate::orbit::path::{Between, SweptAngles};
 use wide::f64x2;
 
-/// A table's numbers, ready for lookups: a method like any other (see [`crate::orbit`]).
+use super::charts::{CRITICAL_B, CRITICAL_POLE, LOWER_E2, TRAPPED_POLE, UPPER_E2};
+use super::logarithm::ln_ratio;
+use super::spec::{Axes, Spec};
+use super::spline::{self, Scale, Stencil};
+use crate::orbit::invariants::{Family, Orbit, Point, three_u_minus_two};
+use crate::orbit::path::{Between, SweptAngles};
+
+/// A table's numbers, ready for lookups. It answers what happens to rays as every method does (see [`crate::orbit`]).
 ///
 /// A swept angle takes one or two square roots, at most one logarithm (about the critical line only), a division and
-/// two interpolations, bicubic ones unless `K` says otherwise.
+/// two bicubic interpolations.
 #[derive(Debug, Clone, Copy)]
-pub struct Lookup<'a, K = Cubic> {
-    /// A, on the critical chart's orbit axis.
+pub struct Lookup<'a> {
+    /// Coefficients of A, on the critical chart's orbit axis.
     amplitude: &'a [f64],
-    critical: Chart<'a>,
-    weak: Chart<'a>,
-    trapped: Chart<'a>,
-    radial: Chart<'a>,
-    /// How the charts are read.
-    kernel: PhantomData<K>,
+    critical: ChartSpline<'a>,
+    weak: ChartSpline<'a>,
+    trapped: ChartSpline<'a>,
+    radial: ChartSpline<'a>,
     error: f64,
 }
 
+/// The bicubic spline of one chart's function.
 #[derive(Debug, Clone, Copy)]
-struct Chart<'a> {
-    numbers: &'a [f64],
+struct ChartSpline<'a> {
+    /// Row by row, `width` coefficients each.
+    coefficients: &'a [f64],
     width: usize,
     place: Scale,
     orbit: Scale,
 }
 
-impl<'a> Chart<'a> {
-    /// The first chart of `all`, which are those after it from then on; each axis has `beyond` numbers more than nodes.
-    fn take(all: &mut &'a [f64], axes: Axes, beyond: usize) -> Self {
-        let width = axes.place.nodes as usize + beyond;
-        let (numbers, rest) = all.split_at(width * (axes.orbit.nodes as usize + beyond));
-        *all = rest;
+impl<'a> ChartSpline<'a> {
+    /// Takes the first chart's coefficients off `rest`.
+    fn take(rest: &mut &'a [f64], axes: Axes) -> Self {
+        let width = axes.place.coefficients();
+        let (coefficients, after) = rest.split_at(width * axes.orbit.coefficients());
+        *rest = after;
         Self {
-            numbers,
+            coefficients,
             width,
             place: Scale::new(axes.place),
             orbit: Scale::new(axes.orbit),
         }
     }
 
-    /// The numbers along the orbit's axis at one place.
-    fn column<K: Interpolation>(&self, place: f64) -> Vec<f64> {
-        let place = K::place(self.place, place);
-        let rows = self.numbers.chunks_exact(self.width);
-        rows.map(|row| K::value(row, &place)).collect()
+    /// Returns the coefficients along the orbit's axis at one place.
+    fn column(&self, place: f64) -> Vec<f64> {
+        let place = self.place.stencil(place);
+        let rows = self.coefficients.chunks_exact(self.width);
+        rows.map(|row| spline::value(row, &place)).collect()
     }
 
-    /// The values at two places of one orbit.
+    /// Returns the values at two places of one orbit.
     #[inline(always)]
-    fn at<K: Interpolation>(&self, row: &K::Place, places: f64x2) -> f64x2 {
-        K::values_2d(
-            self.numbers,
-            self.width,
-            row,
-            &K::places(self.place, places),
-        )
+    fn at(&self, row: &Stencil, places: f64x2) -> f64x2 {
+        let places = self.place.stencils(places);
+        spline::values_2d(self.coefficients, self.width, row, &places)
     }
 }
 
-impl<'a, K: Interpolation> Lookup<'a, K> {
-    /// The charts within `numbers`, which are exactly as many as `spec` and `kernel` say; `error` is that of their
-    /// angles.
-    pub(crate) fn new(spec: &Spec, numbers: &'a [f64], error: f64, _kernel: K) -> Self {
-        let nodes = spec.critical_axes().orbit.nodes as usize;
-        let (amplitude, mut rest) = numbers.split_at(nodes + K::BEYOND);
-        let mut take = |axes| Chart::take(&mut rest, axes, K::BEYOND);
+impl<'a> Lookup<'a> {
+    /// `numbers` are as many as [`Spec::coefficients`] says, and `error` is the error of their angles.
+    pub(crate) fn new(spec: &Spec, numbers: &'a [f64], error: f64) -> Self {
+        let (amplitude, mut rest) = numbers.split_at(spec.critical_axes().orbit.coefficients());
+        let mut take = |axes| ChartSpline::take(&mut rest, axes);
         Self {
             amplitude,
             critical: take(spec.critical_axes()),
             weak: take(spec.weak_axes()),
             trapped: take(spec.trapped_axes()),
             radial: take(spec.radial_axes()),
-            kernel: PhantomData,
             error,
         }
     }
@@ -94,12 +85,9 @@ impl<'a, K: Interpolation> Lookup<'a, K> {
         let e = orbit.e2.sqrt();
         let t = (1.0 - e * CRITICAL_B).sqrt();
         let angles = if orbit.family == Family::Trapped {
-            slope / (u - TRAPPED_POLE) * self.trapped.at::<K>(&K::place(self.trapped.orbit, t), u)
+            slope / (u - TRAPPED_POLE) * self.trapped.at(&self.trapped.orbit.stencil(t), u)
         } else {
-            slope / (u + e)
-                * self
-                    .weak
-                    .at::<K>(&K::place(self.weak.orbit, t), u * (1.0 / e))
+            slope / (u + e) * self.weak.at(&self.weak.orbit.stencil(t), u * (1.0 / e))
         };
         angles.to_array()
     }
@@ -107,12 +95,12 @@ impl<'a, K: Interpolation> Lookup<'a, K> {
     /// What the critical chart says of two points of an orbit.
     #[inline(always)]
     fn critical_parts(&self, orbit: &Orbit, points: Pair) -> Critical {
-        let row = K::place(self.critical.orbit, orbit.e2.sqrt());
+        let row = self.critical.orbit.stencil(orbit.e2.sqrt());
         let Pair { u, slope } = points;
         let (gamma, s) = gamma_and_s(u);
         Critical {
-            amplitude: K::value(self.amplitude, &row),
-            smooth: slope / (u + CRITICAL_POLE) * self.critical.at::<K>(&row, gamma),
+            amplitude: spline::value(self.amplitude, &row),
+            smooth: slope / (u + CRITICAL_POLE) * self.critical.at(&row, gamma),
             arguments: s + slope,
         }
     }
@@ -129,8 +117,8 @@ impl<'a, K: Interpolation> Lookup<'a, K> {
         let points = Pair::new(from, to);
         if orbit.e2 > UPPER_E2 {
             let b2 = 1.0 / orbit.e2;
-            let row = K::place(self.radial.orbit, b2);
-            let [first, second] = self.radial.at::<K>(&row, points.u).to_array();
+            let row = self.radial.orbit.stencil(b2);
+            let [first, second] = self.radial.at(&row, points.u).to_array();
             return (second - first).abs() * b2.sqrt();
         }
         if orbit.e2 < LOWER_E2 {
@@ -216,7 +204,7 @@ impl Pair {
     }
 }
 
-impl<K: Interpolation> SweptAngles for Lookup<'_, K> {
+impl SweptAngles for Lookup<'_> {
     /// As measured when the table was made.
     fn error(&self) -> f64 {
         self.error
@@ -240,7 +228,7 @@ impl<K: Interpolation> SweptAngles for Lookup<'_, K> {
         LookupBetween {
             lookup: *self,
             columns: [from, to].map(|(u, gamma)| {
-                let mut column = self.critical.column::<K>(gamma);
+                let mut column = self.critical.column(gamma);
                 for b in &mut column {
                     *b /= u + CRITICAL_POLE;
                 }
@@ -252,28 +240,28 @@ impl<K: Interpolation> SweptAngles for Lookup<'_, K> {
 }
 
 /// Angles between two radii: those of the table, but for rounding.
-struct LookupBetween<'a, K> {
-    lookup: Lookup<'a, K>,
+struct LookupBetween<'a> {
+    lookup: Lookup<'a>,
     /// `B/(u + 0.28)` at both radii, on the critical chart's orbit axis.
     columns: [Vec<f64>; 2],
     /// s at both radii.
     s: f64x2,
 }
 
-impl<K: Interpolation> LookupBetween<'_, K> {
+impl LookupBetween<'_> {
     #[inline(always)]
     fn critical_parts(&self, orbit: &Orbit, slope: f64x2) -> Critical {
-        let row = K::place(self.lookup.critical.orbit, orbit.e2.sqrt());
+        let row = self.lookup.critical.orbit.stencil(orbit.e2.sqrt());
         let [first, second] = &self.columns;
         Critical {
-            amplitude: K::value(self.lookup.amplitude, &row),
-            smooth: slope * f64x2::new([K::value(first, &row), K::value(second, &row)]),
+            amplitude: spline::value(self.lookup.amplitude, &row),
+            smooth: slope * f64x2::new([spline::value(first, &row), spline::value(second, &row)]),
             arguments: self.s + slope,
         }
     }
 }
 
-impl<K: Interpolation> Between for LookupBetween<'_, K> {
+impl Between for LookupBetween<'_> {
     #[inline]
     fn direct(&self, orbit: &Orbit, to: Point) -> f64 {
         self.lookup.direct_from(orbit, orbit.start, to, |points| {
@@ -294,7 +282,7 @@ mod tests {
     use super::*;
     use crate::orbit::Ray;
     use crate::orbit::path::turns;
-    use crate::table::{Spec, generate};
+    use crate::table::{Spec, Table};
 
     /// Sums of the same sixteen numbers of a chart in another order, each sum rounded as often: 16 ε of their size for
     /// both ends, and as much for the factors.
@@ -302,7 +290,7 @@ mod tests {
 
     #[test]
     fn angles_between_two_radii_are_the_tables_own() {
-        let table = generate(&Spec::named("draft").unwrap(), &|_, _| ()).unwrap();
+        let table = Table::generate(&Spec::draft()).unwrap();
         let lookup = table.lookup();
         let mut ways = [0; 2];
         for (from, to) in [

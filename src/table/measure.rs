@@ -3,7 +3,6 @@
 use rayon::prelude::*;
 
 use super::charts::{CRITICAL_B, TRAPPED_U, WEAK_V};
-use super::interpolation::Interpolation;
 use super::lookup::Lookup;
 use super::spec::Spec;
 use super::spline::Axis;
@@ -14,7 +13,7 @@ use crate::orbit::path::SweptAngles;
 
 /// An error, and how many angles it was measured on.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Measured {
+pub struct MeasuredError {
     /// The largest difference of a swept angle, in radians.
     pub error: f64,
     /// How many angles were compared.
@@ -38,7 +37,7 @@ struct Row {
 ///
 /// Both methods are given the same orbit, so that what is compared is the interpolation alone. The result depends on
 /// nothing else, thread count included.
-pub fn measure<K: Interpolation>(spec: &Spec, lookup: &Lookup<'_, K>) -> Measured {
+pub fn measure(spec: &Spec, lookup: &Lookup<'_>) -> MeasuredError {
     let middles =
         |axis: Axis| (1..axis.nodes).map(move |i| 0.5 * (axis.node(i - 1) + axis.node(i)));
     let from_t = |t: f64| (1.0 - t) * (1.0 + t) / CRITICAL_B;
@@ -61,7 +60,7 @@ pub fn measure<K: Interpolation>(spec: &Spec, lookup: &Lookup<'_, K>) -> Measure
     }));
     rows.par_iter()
         .map(|&row| along_orbit(row, lookup))
-        .reduce(Measured::default, |a, b| Measured {
+        .reduce(MeasuredError::default, |a, b| MeasuredError {
             error: a.error.max(b.error),
             angles: a.angles + b.angles,
         })
@@ -74,12 +73,12 @@ fn apoapsis(e: f64) -> f64 {
 
 /// The rays of one `e`: starts and radii from the additive sequence of the plastic number's powers, which fills the
 /// square evenly (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
-fn along_orbit<K: Interpolation>(row: Row, lookup: &Lookup<'_, K>) -> Measured {
+fn along_orbit(row: Row, lookup: &Lookup<'_>) -> MeasuredError {
     let Row {
         e,
         places: (least, greatest),
     } = row;
-    let mut worst = Measured::default();
+    let mut worst = MeasuredError::default();
     for k in 0..RAYS {
         let fraction = |step: f64| {
             let x = 0.5 + f64::from(k) * step;

@@ -25,14 +25,14 @@ pub(crate) struct Axis {
 
 /// Four neighbouring coefficients and their weights.
 #[derive(Debug, Clone, Copy)]
-pub struct Stencil {
+pub(crate) struct Stencil {
     first: usize,
     weights: [f64; 4],
 }
 
 /// The stencils of two places on one axis, their weights side by side.
 #[derive(Debug, Clone, Copy)]
-pub struct StencilPair {
+pub(crate) struct StencilPair {
     first: [usize; 2],
     weights: [f64x2; 4],
 }
@@ -62,7 +62,7 @@ impl Axis {
 
 /// An axis ready for lookups.
 #[derive(Debug, Clone, Copy)]
-pub struct Scale {
+pub(crate) struct Scale {
     start: f64,
     per_unit: f64,
     last_cell: i32,
@@ -127,13 +127,6 @@ impl Scale {
     fn cells_and_shares<T: Real>(self, t: T) -> (T::Indices, T) {
         let (cells, before) = (t - 0.5).rounded(self.last_cell);
         (cells, t - before)
-    }
-
-    /// The node nearest to `x`.
-    #[inline(always)]
-    pub(super) fn nearest(self, x: f64) -> usize {
-        let t = (x - self.start) * self.per_unit;
-        rounded(t, self.last_cell + 1) as usize
     }
 
     /// The cell of `t`, in units of cells, within the axis.
