@@ -7,7 +7,7 @@ mod interleaved;
 
 use darkness::orbit::exact::Exact;
 use darkness::orbit::integrate::{Adaptive, FixedStep, Scheme};
-use darkness::orbit::invariants::{Orbit, Point};
+use darkness::orbit::invariants::{Orbit, OrbitPoint};
 use darkness::orbit::path::SweptAngles;
 use darkness::orbit::{Orbits, Ray};
 use darkness::table::{Spec, Table};
@@ -17,7 +17,7 @@ const RAYS: usize = 4096;
 const ROUNDS: usize = 101;
 
 /// Rays of a camera at r = 30 that cross r = 6, their impact parameters spread evenly over (0, `widest`).
-fn rays(narrowest: f64, widest: f64) -> Vec<(Ray, Orbit, Point)> {
+fn rays(narrowest: f64, widest: f64) -> Vec<(Ray, Orbit, OrbitPoint)> {
     let u0 = 1.0 / 30.0;
     let mut state = 1_u64;
     let mut rays = Vec::with_capacity(RAYS);
@@ -51,7 +51,7 @@ fn main() {
         ("of them, close to radial: 0 < b < 1.4", 0.0, 1.4),
     ] {
         let rays = rays(narrowest, widest);
-        let direct = |angles: &dyn Fn(&Orbit, Point) -> f64| {
+        let direct = |angles: &dyn Fn(&Orbit, OrbitPoint) -> f64| {
             rays.iter()
                 .map(|(_, orbit, point)| angles(orbit, *point))
                 .sum()
@@ -83,7 +83,7 @@ fn main() {
 }
 
 /// The whole question, fate and end included: what the integrators cannot help answering.
-fn whole_rays(rays: &[(Ray, Orbit, Point)]) {
+fn whole_rays(rays: &[(Ray, Orbit, OrbitPoint)]) {
     let rays = &rays[..512];
     let Ok(table) = Table::generate(&Spec::standard()) else {
         return;

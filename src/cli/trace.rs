@@ -8,8 +8,8 @@ use clap::Args;
 
 use super::method::{DEFAULT_TABLE, Method, MethodArgs};
 use super::progress::{Report, warn};
+use super::rays::RayReader;
 use super::{Misuse, StdoutError, start_threads, target};
-use crate::orbit::csv::Rays;
 use crate::orbit::exact::Exact;
 use crate::orbit::{EventKind, Fate, MIN_U, OrbitError, Orbits, Ray};
 
@@ -63,7 +63,7 @@ const BUFFER: usize = 1 << 16;
 pub(super) fn run(args: &TraceArgs, report: Report) -> anyhow::Result<()> {
     let method = args.method.check(Some(DEFAULT_TABLE))?;
     let (input, name) = open(args.input.as_deref())?;
-    let mut rays = Rays::new(input, name)?;
+    let mut rays = RayReader::new(input, name)?;
     start_threads(None)?;
 
     let method = method.ready(report)?;
@@ -121,7 +121,7 @@ fn stdin() -> io::Result<File> {
 
 fn trace(
     orbits: &impl Orbits,
-    rays: &mut Rays<impl BufRead>,
+    rays: &mut RayReader<impl BufRead>,
     radii: &[f64],
     out: &mut impl Write,
 ) -> anyhow::Result<()> {
@@ -131,7 +131,7 @@ fn trace(
         rows += 1;
         let followed = ray.and_then(|ray| {
             let events = orbits.follow(ray, radii);
-            let events = events.map_err(|error| rays.error(error.into()))?;
+            let events = events.map_err(|error| rays.error(&error))?;
             Ok((ray, events))
         });
         match followed {

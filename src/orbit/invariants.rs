@@ -1,6 +1,7 @@
 //! What stays constant along a ray: e², its distance from critical, and its family. The fate follows.
 
-use super::{Fate, Ray};
+use super::events::Fate;
+use super::ray::Ray;
 
 /// The photon sphere's inverse radius, where the critical orbit winds for ever.
 pub const PHOTON_SPHERE_U: f64 = 2.0 / 3.0;
@@ -23,7 +24,7 @@ pub enum Family {
 #[derive(Debug, Clone, Copy)]
 pub struct Orbit {
     /// Where the ray starts.
-    pub start: Point,
+    pub start: OrbitPoint,
     /// Whether it starts towards the hole. A ray that starts at its turning point counts as having passed it.
     pub inward: bool,
     /// `e² = (du/dφ)² + u²(1 − u) = 1/b²`.
@@ -36,7 +37,7 @@ pub struct Orbit {
 
 /// A point of an orbit: where it is, and how steep.
 #[derive(Debug, Clone, Copy)]
-pub struct Point {
+pub struct OrbitPoint {
     /// Inverse radius.
     pub u: f64,
     /// `|du/dφ|`.
@@ -63,7 +64,7 @@ impl Orbit {
             Family::Trapped
         };
         Self {
-            start: Point { u, slope },
+            start: OrbitPoint { u, slope },
             inward: w > 0.0 || (slope == 0.0 && family == Family::Trapped),
             e2: slope * slope + u * u * (1.0 - u),
             delta,
@@ -84,17 +85,17 @@ impl Orbit {
     /// The orbit's point at inverse radius `u`, if the orbit reaches it (before or after its turning point; a radius
     /// that it only touches is not reached).
     #[inline]
-    pub fn point_at(&self, u: f64) -> Option<Point> {
-        Way::new(self.start.u, u).end(self)
+    pub fn point_at(&self, u: f64) -> Option<OrbitPoint> {
+        RadialLeg::new(self.start.u, u).end(self)
     }
 
     /// The orbit's end: r = ∞ or the horizon. There `|du/dφ| = e`.
-    pub fn end(&self) -> Point {
+    pub fn end(&self) -> OrbitPoint {
         let u = match self.fate() {
             Fate::Capture => 1.0,
             Fate::Escape => 0.0,
         };
-        Point {
+        OrbitPoint {
             u,
             slope: self.e2.sqrt(),
         }
@@ -107,7 +108,7 @@ impl Orbit {
 /// neighbouring radii. About the photon sphere the second factor vanishes too; with `x = u − 2/3` it is
 /// `−(x0 + x + x0² + x0 x + x²)`, which keeps its digits there.
 #[derive(Debug, Clone, Copy)]
-pub struct Way {
+pub struct RadialLeg {
     /// Where it ends.
     u: f64,
     /// Whether that is inside the photon sphere.
@@ -118,7 +119,7 @@ pub struct Way {
     critical: f64,
 }
 
-impl Way {
+impl RadialLeg {
     /// From inverse radius `u0` to `u`.
     #[inline]
     pub fn new(u0: f64, u: f64) -> Self {
@@ -140,7 +141,7 @@ impl Way {
     /// Where `orbit`, which starts where the way does, is at the way's end, if it gets there: see
     /// [`Orbit::point_at`].
     #[inline(always)]
-    pub fn end(&self, orbit: &Orbit) -> Option<Point> {
+    pub fn end(&self, orbit: &Orbit) -> Option<OrbitPoint> {
         let slope2 = orbit.start.slope * orbit.start.slope;
         // Where u̇² is small against the start's, which is nearer to the photon sphere, a difference from the start's
         // keeps few digits, and s² + Δ all of them.
@@ -154,7 +155,7 @@ impl Way {
             Family::Scattered => !self.inside,
             Family::Trapped => self.inside,
         };
-        (same_side && squared > 0.0).then(|| Point {
+        (same_side && squared > 0.0).then(|| OrbitPoint {
             u: self.u,
             slope: squared.sqrt(),
         })

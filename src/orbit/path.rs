@@ -1,19 +1,18 @@
 //! A ray's events, put together from swept angles. Written once for every method that knows those.
 
-use super::exact::turning_u;
-use super::invariants::{Family, Orbit, Point};
-use super::{
-    Event, EventKind, OrbitError, Orbits, Ray, TurningPoint, WatchedRadius, inverse_radii,
-};
+use super::elliptic::turning_u;
+use super::events::{Event, EventKind, Orbits, TurningPoint, WatchedRadius};
+use super::invariants::{Family, Orbit, OrbitPoint};
+use super::ray::{OrbitError, Ray};
 
 /// A method that knows the angle a ray sweeps between two points of its orbit.
 pub trait SweptAngles: Sync {
     /// The angle swept from `from` to `to` on a stretch without a turning point, `∫ du/|du/dφ|` between them; ≥ 0.
-    fn direct(&self, orbit: &Orbit, from: Point, to: Point) -> f64;
+    fn direct(&self, orbit: &Orbit, from: OrbitPoint, to: OrbitPoint) -> f64;
 
     /// The angle swept from `from` over the orbit's turning point (periapsis or apoapsis) to `to`. Only for orbits
     /// that have one.
-    fn around(&self, orbit: &Orbit, from: Point, to: Point) -> f64;
+    fn around(&self, orbit: &Orbit, from: OrbitPoint, to: OrbitPoint) -> f64;
 
     /// The largest error of an angle, in radians, beside what rounding the ray's own two numbers does to it.
     fn error(&self) -> f64;
@@ -34,7 +33,7 @@ pub trait SweptAngles: Sync {
 
     /// The same angles, for one orbit after the other, of orbits that start at inverse radius `from`, to `to`: where
     /// a method knows what depends on the two alone, it is found once.
-    fn between(&self, from: f64, to: f64) -> impl Between {
+    fn between(&self, from: f64, to: f64) -> impl FixedRadiiAngles {
         let _ = (from, to);
         Anywhere(self)
     }
@@ -52,15 +51,15 @@ pub trait SweptAngles: Sync {
 }
 
 /// A method's swept angles from the start of orbits, which is at one radius, to their points at another.
-pub trait Between {
+pub trait FixedRadiiAngles {
     /// [`SweptAngles::direct`] from the start.
-    fn direct(&self, orbit: &Orbit, to: Point) -> f64;
+    fn direct(&self, orbit: &Orbit, to: OrbitPoint) -> f64;
 
     /// [`SweptAngles::around`] from the start.
-    fn around(&self, orbit: &Orbit, to: Point) -> f64;
+    fn around(&self, orbit: &Orbit, to: OrbitPoint) -> f64;
 
     /// The angles at which the orbit is at a point of its own, if it has it, inbound and outbound.
-    fn crossings(&self, orbit: &Orbit, point: Option<Point>) -> Crossings {
+    fn crossings(&self, orbit: &Orbit, point: Option<OrbitPoint>) -> Crossings {
         let Some(point) = point else {
             return Crossings::default();
         };
@@ -82,17 +81,17 @@ pub trait Between {
     }
 }
 
-/// Between any two radii, of a method that knows nothing of them beforehand.
+/// FixedRadiiAngles any two radii, of a method that knows nothing of them beforehand.
 struct Anywhere<'a, A: ?Sized>(&'a A);
 
-impl<A: SweptAngles + ?Sized> Between for Anywhere<'_, A> {
+impl<A: SweptAngles + ?Sized> FixedRadiiAngles for Anywhere<'_, A> {
     #[inline]
-    fn direct(&self, orbit: &Orbit, to: Point) -> f64 {
+    fn direct(&self, orbit: &Orbit, to: OrbitPoint) -> f64 {
         self.0.direct(orbit, orbit.start, to)
     }
 
     #[inline]
-    fn around(&self, orbit: &Orbit, to: Point) -> f64 {
+    fn around(&self, orbit: &Orbit, to: OrbitPoint) -> f64 {
         self.0.around(orbit, orbit.start, to)
     }
 }
@@ -145,7 +144,7 @@ pub struct Crossings {
 
 impl<T: SweptAngles> Orbits for T {
     fn follow(&self, ray: Ray, radii: &[f64]) -> Result<Vec<Event>, OrbitError> {
-        let watched = inverse_radii(radii)?;
+        let watched = WatchedRadius::sorted(radii)?;
         let orbit = Orbit::new(ray);
         let mut inbound = Vec::with_capacity(watched.len());
         let mut outbound = Vec::with_capacity(watched.len());

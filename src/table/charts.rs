@@ -38,8 +38,8 @@
 //! *Radial*: `H = ∫₀ᵘ du/√(1 − u²(1 − u)/e²)` is analytic in u and 1/e², and gives short angles with small absolute error.
 
 use crate::orbit::carlson::rf;
-use crate::orbit::exact::{RealRoots, without_turning_point};
 pub(crate) use crate::orbit::invariants::CRITICAL_E2;
+use crate::orbit::{RealRoots, without_turning_point};
 
 /// Between the weak or trapped chart and the critical one.
 pub(crate) const LOWER_E2: f64 = 0.64 * CRITICAL_E2;

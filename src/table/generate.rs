@@ -13,7 +13,7 @@ use super::spec::{Axes, Spec, SpecError};
 use super::spline;
 
 /// Called with the rows of nodes done, and how many there are.
-pub type Progress<'a> = dyn Fn(u64, u64) + Sync + 'a;
+pub type RowProgress<'a> = dyn Fn(u64, u64) + Sync + 'a;
 
 impl Table {
     /// Makes the table that `spec` describes, on all threads of the current rayon pool, and measures its error. The
@@ -40,7 +40,10 @@ impl Table {
     ///
     /// # Errors
     /// [`SpecError`] where no table can have this specification.
-    pub fn generate_with_progress(spec: &Spec, progress: &Progress<'_>) -> Result<Self, SpecError> {
+    pub fn generate_with_progress(
+        spec: &Spec,
+        progress: &RowProgress<'_>,
+    ) -> Result<Self, SpecError> {
         if !spec.is_sound() {
             return Err(SpecError);
         }

@@ -6,8 +6,8 @@ use super::charts::{CRITICAL_B, CRITICAL_POLE, LOWER_E2, TRAPPED_POLE, UPPER_E2}
 use super::logarithm::ln_ratio;
 use super::spec::{Axes, Spec};
 use super::spline::{self, Scale, Stencil};
-use crate::orbit::invariants::{Family, Orbit, Point, three_u_minus_two};
-use crate::orbit::path::{Between, SweptAngles};
+use crate::orbit::invariants::{Family, Orbit, OrbitPoint, three_u_minus_two};
+use crate::orbit::path::{FixedRadiiAngles, SweptAngles};
 
 /// A table's numbers, ready for lookups. It answers what happens to rays as every method does (see [`crate::orbit`]).
 ///
@@ -80,8 +80,8 @@ impl<'a> Lookup<'a> {
 
     /// The angles from both points to the turning point, where e² is small.
     #[inline(always)]
-    fn angles_to_turning_point(&self, orbit: &Orbit, points: Pair) -> [f64; 2] {
-        let Pair { u, slope } = points;
+    fn angles_to_turning_point(&self, orbit: &Orbit, points: PointPair) -> [f64; 2] {
+        let PointPair { u, slope } = points;
         let e = orbit.e2.sqrt();
         let t = (1.0 - e * CRITICAL_B).sqrt();
         let angles = if orbit.family == Family::Trapped {
@@ -94,11 +94,11 @@ impl<'a> Lookup<'a> {
 
     /// What the critical chart says of two points of an orbit.
     #[inline(always)]
-    fn critical_parts(&self, orbit: &Orbit, points: Pair) -> Critical {
+    fn critical_parts(&self, orbit: &Orbit, points: PointPair) -> CriticalParts {
         let row = self.critical.orbit.stencil(orbit.e2.sqrt());
-        let Pair { u, slope } = points;
+        let PointPair { u, slope } = points;
         let (gamma, s) = gamma_and_s(u);
-        Critical {
+        CriticalParts {
             amplitude: spline::value(self.amplitude, &row),
             smooth: slope / (u + CRITICAL_POLE) * self.critical.at(&row, gamma),
             arguments: s + slope,
@@ -110,11 +110,11 @@ impl<'a> Lookup<'a> {
     fn direct_from(
         &self,
         orbit: &Orbit,
-        from: Point,
-        to: Point,
-        critical: impl FnOnce(Pair) -> Critical,
+        from: OrbitPoint,
+        to: OrbitPoint,
+        critical: impl FnOnce(PointPair) -> CriticalParts,
     ) -> f64 {
-        let points = Pair::new(from, to);
+        let points = PointPair::new(from, to);
         if orbit.e2 > UPPER_E2 {
             let b2 = 1.0 / orbit.e2;
             let row = self.radial.orbit.stencil(b2);
@@ -146,11 +146,11 @@ impl<'a> Lookup<'a> {
     fn around_from(
         &self,
         orbit: &Orbit,
-        from: Point,
-        to: Point,
-        critical: impl FnOnce(Pair) -> Critical,
+        from: OrbitPoint,
+        to: OrbitPoint,
+        critical: impl FnOnce(PointPair) -> CriticalParts,
     ) -> f64 {
-        let points = Pair::new(from, to);
+        let points = PointPair::new(from, to);
         if orbit.e2 < LOWER_E2 {
             let [first, second] = self.angles_to_turning_point(orbit, points);
             return first + second;
@@ -170,7 +170,7 @@ impl<'a> Lookup<'a> {
 }
 
 /// What the critical chart says of two points of an orbit.
-struct Critical {
+struct CriticalParts {
     /// `A`.
     amplitude: f64,
     /// The smooth part of J, `|u̇|/(u + 0.28) B`.
@@ -189,14 +189,14 @@ fn gamma_and_s(u: f64x2) -> (f64x2, f64x2) {
 
 /// Two points of an orbit, side by side.
 #[derive(Debug, Clone, Copy)]
-struct Pair {
+struct PointPair {
     u: f64x2,
     slope: f64x2,
 }
 
-impl Pair {
+impl PointPair {
     #[inline(always)]
-    fn new(from: Point, to: Point) -> Self {
+    fn new(from: OrbitPoint, to: OrbitPoint) -> Self {
         Self {
             u: f64x2::new([from.u, to.u]),
             slope: f64x2::new([from.slope, to.slope]),
@@ -211,21 +211,21 @@ impl SweptAngles for Lookup<'_> {
     }
 
     #[inline]
-    fn direct(&self, orbit: &Orbit, from: Point, to: Point) -> f64 {
+    fn direct(&self, orbit: &Orbit, from: OrbitPoint, to: OrbitPoint) -> f64 {
         self.direct_from(orbit, from, to, |points| self.critical_parts(orbit, points))
     }
 
     #[inline]
-    fn around(&self, orbit: &Orbit, from: Point, to: Point) -> f64 {
+    fn around(&self, orbit: &Orbit, from: OrbitPoint, to: OrbitPoint) -> f64 {
         self.around_from(orbit, from, to, |points| self.critical_parts(orbit, points))
     }
 
     /// With the critical chart's columns at both radii: of all charts it is the one that fixed radii are columns of,
     /// and whose orbits most curves are made of.
-    fn between(&self, from: f64, to: f64) -> impl Between {
+    fn between(&self, from: f64, to: f64) -> impl FixedRadiiAngles {
         let (gamma, s) = gamma_and_s(f64x2::new([from, to]));
         let [from, to] = [(from, gamma.to_array()[0]), (to, gamma.to_array()[1])];
-        LookupBetween {
+        FixedRadiiLookup {
             lookup: *self,
             columns: [from, to].map(|(u, gamma)| {
                 let mut column = self.critical.column(gamma);
@@ -240,7 +240,7 @@ impl SweptAngles for Lookup<'_> {
 }
 
 /// Angles between two radii: those of the table, but for rounding.
-struct LookupBetween<'a> {
+struct FixedRadiiLookup<'a> {
     lookup: Lookup<'a>,
     /// `B/(u + 0.28)` at both radii, on the critical chart's orbit axis.
     columns: [Vec<f64>; 2],
@@ -248,12 +248,12 @@ struct LookupBetween<'a> {
     s: f64x2,
 }
 
-impl LookupBetween<'_> {
+impl FixedRadiiLookup<'_> {
     #[inline(always)]
-    fn critical_parts(&self, orbit: &Orbit, slope: f64x2) -> Critical {
+    fn critical_parts(&self, orbit: &Orbit, slope: f64x2) -> CriticalParts {
         let row = self.lookup.critical.orbit.stencil(orbit.e2.sqrt());
         let [first, second] = &self.columns;
-        Critical {
+        CriticalParts {
             amplitude: spline::value(self.lookup.amplitude, &row),
             smooth: slope * f64x2::new([spline::value(first, &row), spline::value(second, &row)]),
             arguments: self.s + slope,
@@ -261,16 +261,16 @@ impl LookupBetween<'_> {
     }
 }
 
-impl Between for LookupBetween<'_> {
+impl FixedRadiiAngles for FixedRadiiLookup<'_> {
     #[inline]
-    fn direct(&self, orbit: &Orbit, to: Point) -> f64 {
+    fn direct(&self, orbit: &Orbit, to: OrbitPoint) -> f64 {
         self.lookup.direct_from(orbit, orbit.start, to, |points| {
             self.critical_parts(orbit, points.slope)
         })
     }
 
     #[inline]
-    fn around(&self, orbit: &Orbit, to: Point) -> f64 {
+    fn around(&self, orbit: &Orbit, to: OrbitPoint) -> f64 {
         self.lookup.around_from(orbit, orbit.start, to, |points| {
             self.critical_parts(orbit, points.slope)
         })

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::charts::{CRITICAL_B, TRAPPED_U, WEAK_V};
 use super::lookup::Lookup;
 use super::spec::Spec;
-use super::spline::Axis;
+use super::spline::NodeAxis;
 use crate::orbit::Ray;
 use crate::orbit::exact::Exact;
 use crate::orbit::invariants::Orbit;
@@ -25,7 +25,7 @@ const RAYS: u32 = 128;
 
 /// The orbits of one `e`, and the places to take on them.
 #[derive(Debug, Clone, Copy)]
-struct Row {
+struct OrbitRow {
     e: f64,
     /// Least and greatest inverse radius.
     places: (f64, f64),
@@ -39,22 +39,30 @@ struct Row {
 /// nothing else, thread count included.
 pub fn measure(spec: &Spec, lookup: &Lookup<'_>) -> MeasuredError {
     let middles =
-        |axis: Axis| (1..axis.nodes).map(move |i| 0.5 * (axis.node(i - 1) + axis.node(i)));
+        |axis: NodeAxis| (1..axis.nodes).map(move |i| 0.5 * (axis.node(i - 1) + axis.node(i)));
     let from_t = |t: f64| (1.0 - t) * (1.0 + t) / CRITICAL_B;
-    let mut rows: Vec<Row> = Vec::new();
-    rows.extend(middles(spec.critical_axes().orbit).map(|e| Row {
+    let mut rows: Vec<OrbitRow> = Vec::new();
+    rows.extend(middles(spec.critical_axes().orbit).map(|e| OrbitRow {
         e,
         places: (0.0, 1.0),
     }));
-    rows.extend(middles(spec.weak_axes().orbit).map(from_t).map(|e| Row {
-        e,
-        places: (0.0, WEAK_V * e),
-    }));
-    rows.extend(middles(spec.trapped_axes().orbit).map(from_t).map(|e| Row {
-        e,
-        places: (apoapsis(e), 1.0),
-    }));
-    rows.extend(middles(spec.radial_axes().orbit).map(|b2| Row {
+    rows.extend(
+        middles(spec.weak_axes().orbit)
+            .map(from_t)
+            .map(|e| OrbitRow {
+                e,
+                places: (0.0, WEAK_V * e),
+            }),
+    );
+    rows.extend(
+        middles(spec.trapped_axes().orbit)
+            .map(from_t)
+            .map(|e| OrbitRow {
+                e,
+                places: (apoapsis(e), 1.0),
+            }),
+    );
+    rows.extend(middles(spec.radial_axes().orbit).map(|b2| OrbitRow {
         e: 1.0 / b2.sqrt(),
         places: (0.0, 1.0),
     }));
@@ -73,8 +81,8 @@ fn apoapsis(e: f64) -> f64 {
 
 /// The rays of one `e`: starts and radii from the additive sequence of the plastic number's powers, which fills the
 /// square evenly (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
-fn along_orbit(row: Row, lookup: &Lookup<'_>) -> MeasuredError {
-    let Row {
+fn along_orbit(row: OrbitRow, lookup: &Lookup<'_>) -> MeasuredError {
+    let OrbitRow {
         e,
         places: (least, greatest),
     } = row;

@@ -21,7 +21,7 @@ pub(crate) mod spline;
 
 pub use file::{Table, TableError, default_path};
 pub use format::{FormatError, Metadata};
-pub use generate::Progress;
+pub use generate::RowProgress;
 pub use lookup::Lookup;
 pub use measure::{MeasuredError, measure};
 pub use spec::{ChartNodes, Spec, SpecError};

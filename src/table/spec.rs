@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::charts;
-use super::spline::Axis;
+use super::spline::NodeAxis;
 
 /// A table's specification. A table's bytes depend on nothing but its specification and the format's version.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -44,19 +44,19 @@ pub struct SpecError;
 /// The two axes of a chart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Axes {
-    pub(crate) place: Axis,
-    pub(crate) orbit: Axis,
+    pub(crate) place: NodeAxis,
+    pub(crate) orbit: NodeAxis,
 }
 
 impl Axes {
     fn new(nodes: ChartNodes, place: (f64, f64), orbit: (f64, f64)) -> Self {
         Self {
-            place: Axis {
+            place: NodeAxis {
                 start: place.0,
                 end: place.1,
                 nodes: nodes.place,
             },
-            orbit: Axis {
+            orbit: NodeAxis {
                 start: orbit.0,
                 end: orbit.1,
                 nodes: nodes.orbit,
@@ -119,7 +119,8 @@ impl Spec {
     /// have.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
-        let scaled = |nodes: u32| ((f64::from(nodes) * factor).round() as u32).max(Axis::FEWEST);
+        let scaled =
+            |nodes: u32| ((f64::from(nodes) * factor).round() as u32).max(NodeAxis::FEWEST);
         let both = |nodes: ChartNodes| ChartNodes {
             place: scaled(nodes.place),
             orbit: scaled(nodes.orbit),
@@ -196,7 +197,7 @@ impl Spec {
 
     /// Whether a table can have this specification: see [`SpecError`].
     pub(crate) fn is_sound(&self) -> bool {
-        let allowed = Axis::FEWEST..=Self::MOST_NODES;
+        let allowed = NodeAxis::FEWEST..=Self::MOST_NODES;
         self.charts()
             .iter()
             .all(|n| allowed.contains(&n.place) && allowed.contains(&n.orbit))

@@ -14,12 +14,12 @@ use crate::lanes::{Real, rounded};
 
 /// A uniform axis whose ends lie exactly on its first and its last node.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Axis {
+pub(crate) struct NodeAxis {
     /// The first node.
     pub(crate) start: f64,
     /// The last node.
     pub(crate) end: f64,
-    /// How many nodes; at least [`Axis::FEWEST`].
+    /// How many nodes; at least [`NodeAxis::FEWEST`].
     pub(crate) nodes: u32,
 }
 
@@ -37,7 +37,7 @@ pub(crate) struct StencilPair {
     weights: [f64x2; 4],
 }
 
-impl Axis {
+impl NodeAxis {
     /// The end conditions take the outermost six nodes.
     pub(crate) const FEWEST: u32 = 6;
 
@@ -69,7 +69,7 @@ pub(crate) struct Scale {
 }
 
 impl Scale {
-    pub(crate) fn new(axis: Axis) -> Self {
+    pub(crate) fn new(axis: NodeAxis) -> Self {
         Self {
             start: axis.start,
             per_unit: axis.scale(),
@@ -443,7 +443,7 @@ mod tests {
     fn cubics_are_reproduced() {
         let cubic = |x: f64| 0.3 - 1.2 * x + 0.7 * x * x - 2.1 * x * x * x;
         for nodes in [6, 7, 8, 20] {
-            let axis = Axis {
+            let axis = NodeAxis {
                 start: -1.0,
                 end: 2.0,
                 nodes,
@@ -463,7 +463,7 @@ mod tests {
 
     #[test]
     fn jets_are_the_splines_derivatives() {
-        let axis = Scale::new(Axis {
+        let axis = Scale::new(NodeAxis {
             start: -1.0,
             end: 2.0,
             nodes: 9,
@@ -496,7 +496,7 @@ mod tests {
 
     #[test]
     fn half_cells_change_no_value() {
-        let axis = |nodes| Axis {
+        let axis = |nodes| NodeAxis {
             start: -1.0,
             end: 2.0,
             nodes,
@@ -523,7 +523,7 @@ mod tests {
     fn fourth_order() {
         let f = |x: f64, y: f64| libm::exp(x) * libm::sin(3.0 * y);
         let error = |nodes: u32| {
-            let axis = Axis {
+            let axis = NodeAxis {
                 start: 0.0,
                 end: 1.0,
                 nodes,

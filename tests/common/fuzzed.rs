@@ -10,8 +10,8 @@ use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 use crafted::{METADATA_AT, METADATA_LENGTH_AT, sealed};
+use darkness::cli::rays::RayReader;
 use darkness::isoradial::{Isoradials, Sight};
-use darkness::orbit::csv::Rays;
 use darkness::orbit::exact::Exact;
 use darkness::orbit::path::SweptAngles;
 use darkness::orbit::{Event, EventKind, Orbits, Ray};
@@ -172,7 +172,7 @@ pub(crate) fn frames(bytes: &[u8]) {
 
 /// The bytes as a list of rays: each line is a ray or a sentence, and each ray ends.
 pub(crate) fn rays(bytes: &[u8]) {
-    let mut rays = match Rays::new(bytes, "list".into()) {
+    let mut rays = match RayReader::new(bytes, "list".into()) {
         Ok(rays) => rays,
         Err(error) => return sentence(&error),
     };

@@ -1,15 +1,15 @@
 //! Steps as long as an error estimate allows.
 
-use super::crossings::{Crossings, Log, Piece};
-use super::{
-    DEFAULT_MAX_STEPS, Departure, Flight, State, acceleration, depart, dop853, opposite, root,
-};
-use crate::orbit::{Event, OrbitError, Orbits, Ray, TurningPoint, WatchedRadius};
+use super::crossings::{CrossingSearch, EventLog, MonotonePiece};
+use super::flight::{DEFAULT_MAX_STEPS, Departure, Flight, State, acceleration, depart, opposite};
+use super::{dop853, root};
+use crate::orbit::events::{Event, Orbits, TurningPoint, WatchedRadius};
+use crate::orbit::ray::{OrbitError, Ray};
 
 /// The orbit equation integrated with the Runge–Kutta method DOP853 in steps that keep each swept angle's error below
 /// a tolerance.
 ///
-/// Crossings and turning points are not interpolated: the step is taken again from its start, with the fraction of
+/// CrossingSearch and turning points are not interpolated: the step is taken again from its start, with the fraction of
 /// its length at which u is the radius (or du/dφ is 0), found by Newton's method.
 ///
 /// # Accuracy
@@ -93,12 +93,12 @@ impl Orbits for Adaptive {
 }
 
 impl Flight for Adaptive {
-    fn fly<'a, L: Log>(
+    fn fly<'a, L: EventLog>(
         &self,
         ray: Ray,
         watched: &'a [WatchedRadius],
         log: L,
-    ) -> Result<Crossings<'a, L>, OrbitError> {
+    ) -> Result<CrossingSearch<'a, L>, OrbitError> {
         let (mut state, mut crossings) = match depart(ray, watched, log) {
             Departure::Done(crossings) => return Ok(crossings),
             Departure::Bound(state, crossings) => (state, crossings),
@@ -134,8 +134,8 @@ impl Flight for Adaptive {
 
 /// Reports what is met on the step of length `h` from `from`, at swept angle `angle`, to `to`. Returns whether the
 /// flight ends on it.
-fn pass_step<L: Log>(
-    crossings: &mut Crossings<'_, L>,
+fn pass_step<L: EventLog>(
+    crossings: &mut CrossingSearch<'_, L>,
     from: State,
     to: State,
     h: f64,
@@ -143,7 +143,7 @@ fn pass_step<L: Log>(
 ) -> bool {
     let inward = from.w > 0.0 || (from.w == 0.0 && to.u > from.u);
     if !opposite(from.w, to.w) {
-        let piece = Piece {
+        let piece = MonotonePiece {
             from: from.u,
             to: to.u,
             inward,
@@ -160,13 +160,13 @@ fn pass_step<L: Log>(
     });
     let turning = dop853::step(from, turn).u;
     crossings.turn(turning, angle + turn);
-    let towards = Piece {
+    let towards = MonotonePiece {
         from: from.u,
         to: turning,
         inward,
         turns: true,
     };
-    let back = Piece {
+    let back = MonotonePiece {
         from: turning,
         to: to.u,
         inward: !inward,
@@ -177,9 +177,9 @@ fn pass_step<L: Log>(
 }
 
 /// Reports what is met on the piece between the two fractions `(first, last)` of a step.
-fn pass_piece<L: Log>(
-    crossings: &mut Crossings<'_, L>,
-    piece: Piece,
+fn pass_piece<L: EventLog>(
+    crossings: &mut CrossingSearch<'_, L>,
+    piece: MonotonePiece,
     (first, last): (f64, f64),
     from: State,
     angle: f64,

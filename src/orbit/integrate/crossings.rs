@@ -1,10 +1,10 @@
 //! Which watched radii a piece of a path passes, in order.
 
-use crate::orbit::{Event, EventKind, Fate, TurningPoint, WatchedRadius};
+use crate::orbit::events::{Event, EventKind, Fate, TurningPoint, WatchedRadius};
 
 /// A piece of a path along which u only rises or only falls.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Piece {
+pub(super) struct MonotonePiece {
     /// u where it begins. What happened there was reported with the piece before.
     pub(super) from: f64,
     /// u where it ends.
@@ -16,13 +16,13 @@ pub(super) struct Piece {
 }
 
 /// What is kept of a flight's events.
-pub(super) trait Log {
+pub(super) trait EventLog {
     /// Takes the next event, and tells whether another is wanted.
     fn take(&mut self, event: Event) -> bool;
 }
 
 /// All of them.
-impl Log for Vec<Event> {
+impl EventLog for Vec<Event> {
     fn take(&mut self, event: Event) -> bool {
         self.push(event);
         true
@@ -30,7 +30,7 @@ impl Log for Vec<Event> {
 }
 
 /// The first.
-impl Log for Option<Event> {
+impl EventLog for Option<Event> {
     fn take(&mut self, event: Event) -> bool {
         *self = Some(event);
         false
@@ -39,7 +39,7 @@ impl Log for Option<Event> {
 
 /// The events of a flight so far, and the radii it may cross next.
 #[derive(Debug)]
-pub(super) struct Crossings<'a, L> {
+pub(super) struct CrossingSearch<'a, L> {
     /// By ascending u.
     watched: &'a [WatchedRadius],
     log: L,
@@ -50,7 +50,7 @@ pub(super) struct Crossings<'a, L> {
     above: f64,
 }
 
-impl<'a, L: Log> Crossings<'a, L> {
+impl<'a, L: EventLog> CrossingSearch<'a, L> {
     /// A flight that begins at `u`, watched at `watched` (by ascending u).
     pub(super) fn new(watched: &'a [WatchedRadius], log: L, u: f64) -> Self {
         let mut crossings = Self {
@@ -75,8 +75,12 @@ impl<'a, L: Log> Crossings<'a, L> {
     /// Reports what is met along a piece, `angle_at(u)` being the swept angle at which the piece reaches u; it is
     /// asked in the order the ray meets them. Returns whether the flight ends on it, or has been followed as far as is
     /// wanted.
-    pub(super) fn pass(&mut self, piece: Piece, mut angle_at: impl FnMut(f64) -> f64) -> bool {
-        let Piece {
+    pub(super) fn pass(
+        &mut self,
+        piece: MonotonePiece,
+        mut angle_at: impl FnMut(f64) -> f64,
+    ) -> bool {
+        let MonotonePiece {
             from,
             to,
             inward,
@@ -162,14 +166,13 @@ impl<'a, L: Log> Crossings<'a, L> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::orbit::inverse_radii;
 
     fn radii_met(pieces: &[(f64, f64, bool)]) -> Vec<f64> {
-        let watched = inverse_radii(&[2.0, 4.0, 8.0]).unwrap();
-        let mut crossings = Crossings::new(&watched, Vec::new(), pieces[0].0);
+        let watched = WatchedRadius::sorted(&[2.0, 4.0, 8.0]).unwrap();
+        let mut crossings = CrossingSearch::new(&watched, Vec::new(), pieces[0].0);
         for &(from, to, turns) in pieces {
             crossings.pass(
-                Piece {
+                MonotonePiece {
                     from,
                     to,
                     inward: to > from,
@@ -211,11 +214,11 @@ mod tests {
 
     #[test]
     fn nothing_is_clear_from_a_level_itself() {
-        let watched = inverse_radii(&[4.0]).unwrap();
-        let mut crossings = Crossings::new(&watched, Vec::new(), 0.25);
+        let watched = WatchedRadius::sorted(&[4.0]).unwrap();
+        let mut crossings = CrossingSearch::new(&watched, Vec::new(), 0.25);
         assert!(!crossings.clear_until(0.3) && !crossings.clear_until(0.2));
         crossings.pass(
-            Piece {
+            MonotonePiece {
                 from: 0.25,
                 to: 0.3,
                 inward: true,

@@ -2,8 +2,8 @@
 
 use core::f64::consts::PI;
 
-use super::State;
 use super::fixed::{FixedStep, Scheme, euler, rk4};
+use super::flight::State;
 use crate::orbit::Ray;
 
 impl FixedStep {

@@ -9,7 +9,7 @@
     reason = "the coefficients stand as published"
 )]
 
-use super::{State, acceleration};
+use super::flight::{State, acceleration};
 
 const STAGES: usize = 12;
 

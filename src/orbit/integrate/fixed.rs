@@ -1,8 +1,10 @@
 //! Steps of one length.
 
-use super::crossings::{Crossings, Log, Piece};
-use super::{DEFAULT_MAX_STEPS, Departure, Flight, State, acceleration, depart, opposite, root};
-use crate::orbit::{Event, OrbitError, Orbits, Ray, TurningPoint, WatchedRadius};
+use super::crossings::{CrossingSearch, EventLog, MonotonePiece};
+use super::flight::{DEFAULT_MAX_STEPS, Departure, Flight, State, acceleration, depart, opposite};
+use super::root;
+use crate::orbit::events::{Event, Orbits, TurningPoint, WatchedRadius};
+use crate::orbit::ray::{OrbitError, Ray};
 
 /// How a step is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -39,14 +41,14 @@ impl FixedStep {
     }
 
     #[inline]
-    fn fly_by<'a, L: Log>(
+    fn fly_by<'a, L: EventLog>(
         &self,
         step: impl Fn(State, f64) -> State,
-        pass_step: impl Fn(&mut Crossings<'a, L>, &Step) -> bool,
+        pass_step: impl Fn(&mut CrossingSearch<'a, L>, &Step) -> bool,
         ray: Ray,
         watched: &'a [WatchedRadius],
         log: L,
-    ) -> Result<Crossings<'a, L>, OrbitError> {
+    ) -> Result<CrossingSearch<'a, L>, OrbitError> {
         let (mut from, mut crossings) = match depart(ray, watched, log) {
             Departure::Done(crossings) => return Ok(crossings),
             Departure::Bound(state, crossings) => (state, crossings),
@@ -85,12 +87,12 @@ impl FixedStep {
 }
 
 impl Flight for FixedStep {
-    fn fly<'a, L: Log>(
+    fn fly<'a, L: EventLog>(
         &self,
         ray: Ray,
         watched: &'a [WatchedRadius],
         log: L,
-    ) -> Result<Crossings<'a, L>, OrbitError> {
+    ) -> Result<CrossingSearch<'a, L>, OrbitError> {
         match self.scheme {
             Scheme::Euler => self.fly_by(euler, pass_line, ray, watched, log),
             Scheme::Rk4 => self.fly_by(rk4, pass_cubic, ray, watched, log),
@@ -149,10 +151,10 @@ pub(super) fn rk4(State { u, w }: State, h: f64) -> State {
 }
 
 /// Reports what is met on a step of Euler's method, a straight line. Returns whether the flight ends on it.
-fn pass_line<L: Log>(crossings: &mut Crossings<'_, L>, step: &Step) -> bool {
+fn pass_line<L: EventLog>(crossings: &mut CrossingSearch<'_, L>, step: &Step) -> bool {
     let Step { from, to, h, angle } = *step;
     // The polygon turns at its corners: where du/dφ changes sign over the step, u still follows the first.
-    let piece = Piece {
+    let piece = MonotonePiece {
         from: from.u,
         to: to.u,
         inward: from.w > 0.0,
@@ -165,12 +167,12 @@ fn pass_line<L: Log>(crossings: &mut Crossings<'_, L>, step: &Step) -> bool {
 }
 
 /// Reports what is met on a step of the Runge–Kutta method, by its cubic. Returns whether the flight ends on it.
-fn pass_cubic<L: Log>(crossings: &mut Crossings<'_, L>, step: &Step) -> bool {
+fn pass_cubic<L: EventLog>(crossings: &mut CrossingSearch<'_, L>, step: &Step) -> bool {
     let Step { from, to, h, .. } = *step;
-    let cubic = Cubic::new(step);
+    let cubic = HermiteCubic::new(step);
     let inward = from.w > 0.0 || (from.w == 0.0 && to.u > from.u);
     if !opposite(from.w, to.w) {
-        let piece = Piece {
+        let piece = MonotonePiece {
             from: from.u,
             to: to.u,
             inward,
@@ -186,13 +188,13 @@ fn pass_cubic<L: Log>(crossings: &mut Crossings<'_, L>, step: &Step) -> bool {
     });
     let turning = from.u + cubic.rise(turn);
     crossings.turn(turning, step.angle + turn);
-    let towards = Piece {
+    let towards = MonotonePiece {
         from: from.u,
         to: turning,
         inward,
         turns: true,
     };
-    let back = Piece {
+    let back = MonotonePiece {
         from: turning,
         to: to.u,
         inward: !inward,
@@ -203,14 +205,14 @@ fn pass_cubic<L: Log>(crossings: &mut Crossings<'_, L>, step: &Step) -> bool {
 }
 
 /// `u − u_from = c₁x + c₂x² + c₃x³` at angle x from a step's start, with the step's u and du/dφ at both ends.
-struct Cubic {
+struct HermiteCubic {
     from: f64,
     c1: f64,
     c2: f64,
     c3: f64,
 }
 
-impl Cubic {
+impl HermiteCubic {
     fn new(step: &Step) -> Self {
         let Step { from, to, h, .. } = *step;
         let mean = (to.u - from.u) / h;
@@ -235,10 +237,10 @@ impl Cubic {
     }
 
     /// Reports what is met between the angles `first` and `last` from the step's start, itself at `angle`.
-    fn pass<L: Log>(
+    fn pass<L: EventLog>(
         &self,
-        crossings: &mut Crossings<'_, L>,
-        piece: Piece,
+        crossings: &mut CrossingSearch<'_, L>,
+        piece: MonotonePiece,
         (first, last): (f64, f64),
         angle: f64,
     ) -> bool {
