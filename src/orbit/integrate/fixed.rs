@@ -1,4 +1,4 @@
-//! Steps of one length.
+//! Integration in steps of one length.
 
 use super::crossings::{CrossingSearch, EventLog, MonotonePiece};
 use super::flight::{DEFAULT_MAX_STEPS, Departure, Flight, State, acceleration, depart, opposite};
@@ -11,27 +11,28 @@ use crate::orbit::ray::{OrbitError, Ray};
 pub enum Scheme {
     /// Euler's method, of order 1; crossings by linear interpolation.
     Euler,
-    /// The classical Runge–Kutta method, of order 4; crossings on the cubic that has the step's u and du/dφ at both
-    /// ends (Hermite's), whose error is of order 4 too.
+    /// The classical Runge–Kutta method, of order 4; crossings by the Hermite cubic through the step's u and du/dφ at
+    /// both ends, whose error is of order 4 too.
     Rk4,
 }
 
-/// The orbit equation integrated in steps of one length: what a renderer tries first, and the baseline for all else.
+/// The orbit equation integrated in steps of one length: what a renderer tries first, and the baseline of all
+/// comparisons.
 ///
-/// A ray with `e² = (du/dφ)² + u²(1 − u) > 1/h²` is stepped with 1/e in place of h, so that no step goes further
-/// than from the horizon to infinity. A step `h` that is not above 0 gets nowhere: [`OrbitError::StepLimit`].
+/// A ray with `e² = (du/dφ)² + u²(1 − u) > 1/h²` takes steps of 1/e in place of h, so that no step is longer than the
+/// way from the horizon to infinity. A step `h` that is not above 0 gives [`OrbitError::StepLimit`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FixedStep {
     /// How a step is taken.
     pub scheme: Scheme,
-    /// Length of a step in φ, in radians; 0.02 is typical.
+    /// The length of a step in φ, in radians; 0.02 is typical.
     pub h: f64,
-    /// Steps after which [`OrbitError::StepLimit`] is returned.
+    /// The number of steps after which [`OrbitError::StepLimit`] is returned.
     pub max_steps: u64,
 }
 
 impl FixedStep {
-    /// Steps of `h` radians, at most 100,000 of them.
+    /// Integrates in steps of `h` radians, at most 100,000 of them.
     pub fn new(scheme: Scheme, h: f64) -> Self {
         Self {
             scheme,
@@ -131,9 +132,9 @@ pub(super) fn euler(at: State, h: f64) -> State {
     }
 }
 
-/// The classical method with its slopes of u written out: since `dw/dφ` depends on u alone, its four stages are
-/// these, in the form of Nyström (Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, §II.14), and
-/// two of them can be computed at once.
+/// Takes a step of the classical method with its slopes of u written out. Since `dw/dφ` depends on u alone, its four
+/// stages have the form of Nyström (Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, §II.14), and
+/// two of them can be computed at the same time.
 #[inline]
 pub(super) fn rk4(State { u, w }: State, h: f64) -> State {
     let half = 0.5 * h;
@@ -150,10 +151,10 @@ pub(super) fn rk4(State { u, w }: State, h: f64) -> State {
     }
 }
 
-/// Reports what is met on a step of Euler's method, a straight line. Returns whether the flight ends on it.
+/// Reports the events on a step of Euler's method, a straight line. Returns whether the flight ends on it.
 fn pass_line<L: EventLog>(crossings: &mut CrossingSearch<'_, L>, step: &Step) -> bool {
     let Step { from, to, h, angle } = *step;
-    // The polygon turns at its corners: where du/dφ changes sign over the step, u still follows the first.
+    // The polygon turns at its corners: where du/dφ changes sign over the step, u still follows the first sign.
     let piece = MonotonePiece {
         from: from.u,
         to: to.u,
@@ -166,7 +167,7 @@ fn pass_line<L: EventLog>(crossings: &mut CrossingSearch<'_, L>, step: &Step) ->
     crossings.pass(piece, |u| angle + h * ((u - from.u) / (to.u - from.u)))
 }
 
-/// Reports what is met on a step of the Runge–Kutta method, by its cubic. Returns whether the flight ends on it.
+/// Reports the events on a step of the Runge–Kutta method, on its cubic. Returns whether the flight ends on it.
 fn pass_cubic<L: EventLog>(crossings: &mut CrossingSearch<'_, L>, step: &Step) -> bool {
     let Step { from, to, h, .. } = *step;
     let cubic = HermiteCubic::new(step);
@@ -236,7 +237,7 @@ impl HermiteCubic {
         2.0 * self.c2 + x * 6.0 * self.c3
     }
 
-    /// Reports what is met between the angles `first` and `last` from the step's start, itself at `angle`.
+    /// Reports the events between the angles `first` and `last` from the step's start, which is at `angle`.
     fn pass<L: EventLog>(
         &self,
         crossings: &mut CrossingSearch<'_, L>,

@@ -4,12 +4,12 @@ use super::crossings::{CrossingSearch, EventLog, MonotonePiece};
 use crate::orbit::events::{Event, EventKind, TurningPoint, WatchedRadius};
 use crate::orbit::ray::{OrbitError, Ray};
 
-/// Steps after which a stepped solution gives up, where nothing else is asked for. A ray one unit in the last place
-/// from critical winds some 40 radians, which even steps of 0.001 cover in less than half of this.
+/// The number of steps after which a stepped solution gives up, unless told otherwise. A ray one unit in the last place
+/// from critical winds some 40 radians, which even steps of 0.001 cover in less than half as many.
 pub(super) const DEFAULT_MAX_STEPS: u64 = 100_000;
 
-/// |du/dφ| from which a ray's path is straight in (φ, u) to the last bit. Between the horizon and infinity
-/// `w² = e² − u²(1 − u)` varies by no more than 4/27, hence w by a share of 2/(27w²) at most: less than 2⁻⁵⁵ here.
+/// The |du/dφ| from which a ray's path is straight in (φ, u) to the last bit. Between the horizon and infinity
+/// `w² = e² − u²(1 − u)` varies by at most 4/27, and so w by a share of at most 2/(27w²), which is less than 2⁻⁵⁵ here.
 pub(super) const STRAIGHT: f64 = (1_u64 << 26) as f64;
 
 /// A point of the phase plane.
@@ -21,9 +21,9 @@ pub(super) struct State {
     pub(super) w: f64,
 }
 
-/// `d²u/dφ² = 3/2 u² − u`, as `3/2 u (u − 2/3)` with 2/3 in two parts, the second being what the first is rounded by:
-/// correct to a few units in its own last place on all sides of the photon sphere, so that this repels even the ray
-/// that starts at its rounded place.
+/// Computes `d²u/dφ² = 3/2 u² − u` as `3/2 u (u − 2/3)`. 2/3 is taken in two parts, the second of which is the rounding
+/// error of the first. The result is right to a few units in its own last place on both sides of the photon sphere, so
+/// that even a ray that starts at its rounded radius is repelled.
 #[inline]
 pub(super) fn acceleration(u: f64) -> f64 {
     const HIGH: f64 = 2.0 / 3.0;
@@ -31,21 +31,21 @@ pub(super) fn acceleration(u: f64) -> f64 {
     1.5 * u * ((u - HIGH) - LOW)
 }
 
-/// Whether a and b have opposite signs, zero having none.
+/// Returns whether a and b have opposite signs. Zero has none.
 pub(super) fn opposite(a: f64, b: f64) -> bool {
     (a < 0.0 && b > 0.0) || (a > 0.0 && b < 0.0)
 }
 
-/// What is left of a ray's flight when it is about to be stepped.
+/// A ray's flight before its first step.
 pub(super) enum Departure<'a, L> {
-    /// The path is straight: nothing is left to do.
+    /// The path is straight, and all its crossings are found.
     Done(CrossingSearch<'a, L>),
     /// The state to step from, and the crossings to look for.
     Bound(State, CrossingSearch<'a, L>),
 }
 
-/// Prepares a flight: the rays that are straight lines in (φ, u), among them those with infinite du/dφ, whose angles
-/// are all 0, are answered here.
+/// Prepares a flight. Rays that are straight lines in (φ, u) are finished here, among them those with infinite du/dφ,
+/// whose angles are all 0.
 pub(super) fn depart<L: EventLog>(ray: Ray, watched: &[WatchedRadius], log: L) -> Departure<'_, L> {
     let start = State {
         u: ray.u(),
@@ -66,9 +66,9 @@ pub(super) fn depart<L: EventLog>(ray: Ray, watched: &[WatchedRadius], log: L) -
     Departure::Bound(start, CrossingSearch::new(watched, log, start.u))
 }
 
-/// A method that steps along a flight until its end, or until nothing more is wanted of it.
+/// A method that steps along a ray until its end, or until `log` wants no further event.
 pub(super) trait Flight {
-    /// Flies past `watched` (by ascending u), noting in `log` what happens.
+    /// Follows `ray` past `watched` (by ascending u), and puts its events into `log`.
     ///
     /// # Errors
     /// [`OrbitError::StepLimit`]
@@ -79,15 +79,15 @@ pub(super) trait Flight {
         log: L,
     ) -> Result<CrossingSearch<'a, L>, OrbitError>;
 
-    /// [`Orbits::follow`](crate::orbit::Orbits::follow)
+    /// Implements [`Orbits::follow`](crate::orbit::Orbits::follow)
     fn all_events(&self, ray: Ray, radii: &[f64]) -> Result<Vec<Event>, OrbitError> {
         let watched = WatchedRadius::sorted(radii)?;
-        // Every radius is passed twice at most.
+        // Each radius is crossed at most twice.
         let log = Vec::with_capacity(2 * watched.len() + 1);
         self.fly(ray, &watched, log).map(CrossingSearch::into_log)
     }
 
-    /// [`Orbits::first_crossing`](crate::orbit::Orbits::first_crossing)
+    /// Implements [`Orbits::first_crossing`](crate::orbit::Orbits::first_crossing)
     fn first_event(&self, ray: Ray, radius: f64) -> Result<Option<f64>, OrbitError> {
         let watched = [WatchedRadius::new(radius)?];
         let first = self.fly(ray, &watched, None)?.into_log();
@@ -97,7 +97,7 @@ pub(super) trait Flight {
         }))
     }
 
-    /// [`Orbits::turning_point`](crate::orbit::Orbits::turning_point)
+    /// Implements [`Orbits::turning_point`](crate::orbit::Orbits::turning_point)
     fn turn(&self, ray: Ray) -> Result<Option<TurningPoint>, OrbitError> {
         let flight = self.fly(ray, &[], None)?;
         Ok(flight.turning_point())

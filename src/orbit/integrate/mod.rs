@@ -1,12 +1,12 @@
 //! Direct integration: the orbit equation itself, stepped in the swept angle φ.
 //!
 //! The equation is `du/dφ = w`, `dw/dφ = 3/2 u² − u` (Chandrasekhar, *The Mathematical Theory of Black Holes*, §20).
-//! [`Adaptive`] takes the steps an error estimate asks for and is accurate to a tolerance; [`FixedStep`] takes steps
-//! of one length, the plain first attempt that everything faster is measured against. Neither uses the first
-//! integral or an elliptic integral, so both are independent checks of the methods that do.
+//! [`Adaptive`] takes steps as long as an error estimate allows, to a tolerance. [`FixedStep`] takes steps of one
+//! length: the plain first attempt that everything faster is compared with. Neither uses the first integral or an
+//! elliptic integral, so that both are independent checks of the methods that do.
 //!
-//! Both walk the same way. A step is cut at the turning point inside it, if there is one (no ray has more than one
-//! in all its flight), and each monotone piece is searched for the watched radii it passes, in order.
+//! Both cut a step at the turning point within it, if there is one (no ray has more than one in its whole flight), and
+//! search each monotone piece for the watched radii that it passes, in order.
 
 mod adaptive;
 mod crossings;
