@@ -50,9 +50,9 @@ impl Ray {
         if !(0.0..=greatest).contains(&b) {
             return Err(OrbitError::ImpactParameter { b, greatest });
         }
-        // As a product the difference keeps its digits near the turning point.
+        // In two factors the difference keeps its digits near the turning point, and no square overflows.
         let (e, tangential) = (1.0 / b, 1.0 / greatest);
-        let dudphi = ((e - tangential).max(0.0) * (e + tangential)).sqrt();
+        let dudphi = (e - tangential).max(0.0).sqrt() * (e + tangential).sqrt();
         Ok(Self { dudphi, ..ray })
     }
 
@@ -217,6 +217,8 @@ mod tests {
         for radius in [1.5, 3.0, 30.0] {
             let at_rest = Ray::from_impact_parameter(radius, greatest(radius)).unwrap();
             assert_eq!(at_rest.dudphi(), 0.0);
+            let steep = Ray::from_impact_parameter(radius, 1e-200).unwrap();
+            assert!((steep.dudphi() * 1e-200 - 1.0).abs() < 1e-15);
             for straight in [
                 Ray::from_impact_parameter(radius, 0.0),
                 Ray::from_angle(radius, 0.0),
