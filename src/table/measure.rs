@@ -133,3 +133,19 @@ fn along_orbit(row: OrbitRow, lookup: &Lookup<'_>) -> MeasuredError {
     }
     worst
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::table::{Spec, Table};
+
+    /// The error of cubic splines falls with the fourth power of the distance between nodes.
+    #[test]
+    fn the_error_falls_with_the_fourth_power_of_the_nodes() {
+        let error = |factor| {
+            let spec = Spec::standard().scaled(factor);
+            Table::generate(&spec).unwrap().metadata().measured_error
+        };
+        let order = 0.5 * libm::log2(error(0.5) / error(2.0));
+        assert!((3.4..4.8).contains(&order), "{order}");
+    }
+}
