@@ -103,7 +103,6 @@ impl Critical {
             Contestant::adaptive(1e-9),
         ];
         contestants.extend(tables.files());
-        contestants.extend(tables.standard_grids());
         contestants.push(Contestant::exact());
         let mut points = Vec::new();
         for (i, contestant) in contestants.iter().enumerate() {

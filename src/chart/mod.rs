@@ -28,6 +28,7 @@ use methods::{Method, Tables};
 
 use crate::render::RenderError;
 use crate::scene::Scene;
+use crate::table::SpecError;
 
 /// How much is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,9 +45,9 @@ pub type Progress<'a> = dyn Fn(&'static str, f64) + Sync + 'a;
 /// Why nothing could be measured.
 #[derive(Debug, thiserror::Error)]
 pub enum ChartError {
-    /// A table that cannot be made.
-    #[error("a table to measure with cannot be made")]
-    Table,
+    /// A table to measure with cannot be made.
+    #[error(transparent)]
+    Table(#[from] SpecError),
     /// The thread that times are taken on.
     #[error("the thread to measure on cannot be started ({0})")]
     Threads(String),
@@ -157,7 +158,7 @@ impl Chart {
         progress: &Progress<'_>,
     ) -> Result<Self, ChartError> {
         progress("making tables", 0.0);
-        let tables = Tables::new(effort).ok_or(ChartError::Table)?;
+        let tables = Tables::new(effort)?;
         let rays = rays::Rays::measure(&tables, effort, &|share| {
             progress("timing rays", 0.05 + 0.4 * share);
         });

@@ -166,20 +166,10 @@ impl Canvas<'_> {
             Marker::Disc => self
                 .0
                 .draw(&Circle::new(point(at), radius, colour.filled()))?,
-            Marker::Ring => {
-                self.0
-                    .draw(&Circle::new(point(at), radius, WHITE.filled()))?;
-                let style = colour.stroke_width(units(0.4 * size).unsigned_abs());
-                self.0.draw(&Circle::new(point(at), radius, style))?;
-            }
             Marker::Square => polygon(&[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)])?,
             Marker::Diamond => polygon(&[(0.0, -1.3), (1.1, 0.0), (0.0, 1.3), (-1.1, 0.0)])?,
             Marker::Up => polygon(&[(0.0, -1.25), (1.2, 0.85), (-1.2, 0.85)])?,
             Marker::Down => polygon(&[(0.0, 1.25), (1.2, -0.85), (-1.2, -0.85)])?,
-            Marker::Plus => {
-                stroke(&[(-1.1, 0.0), (1.1, 0.0)])?;
-                stroke(&[(0.0, -1.1), (0.0, 1.1)])?;
-            }
             Marker::Cross => {
                 stroke(&[(-0.9, -0.9), (0.9, 0.9)])?;
                 stroke(&[(-0.9, 0.9), (0.9, -0.9)])?;

@@ -50,10 +50,6 @@ fn series(critical: &Critical) -> Vec<Series<'_>> {
     let mut all: Vec<Series<'_>> = Vec::new();
     for point in &critical.points {
         let method = point.measurement.method;
-        // The standard table is cubic splines on the standard grid: one line for both.
-        if method == Method::Cubic {
-            continue;
-        }
         let (knob, _) = point
             .measurement
             .setting
@@ -63,7 +59,6 @@ fn series(critical: &Critical) -> Vec<Series<'_>> {
         let label = match method {
             Method::Euler | Method::Rk4 => format!("{} {}", look.label, knob.replace('=', " = ")),
             Method::Adaptive => "adaptive 10⁻⁹".into(),
-            Method::TableStandard => "table standard = cubic".into(),
             _ => look.label.to_owned(),
         };
         match all.iter_mut().find(|series| series.label == label) {

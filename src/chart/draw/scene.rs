@@ -35,11 +35,8 @@ struct Series<'a> {
 }
 
 fn series(frame: &Frame) -> Vec<Series<'_>> {
-    // The standard table is cubic splines on the standard grid: one line for both.
-    let methods = Method::ALL
+    Method::ALL
         .iter()
-        .filter(|method| **method != Method::Cubic);
-    methods
         .map(|&method| {
             let of = frame.points.iter().filter(|point| point.method == method);
             let mut points: Vec<_> = of.collect();
@@ -182,7 +179,7 @@ pub(super) fn draw(canvas: &Canvas<'_>, frame: &Frame, at: (f64, f64)) -> Result
     let (left, top) = at;
     let (width, height) = frame.size;
     let caption = format!(
-        "{} at {width} × {height}, edges asked to be right to {:?} pixels. Tables, grids (of the standard table's size; the cubic one is that table) and exact draw isoradial curves, to several tolerances, and fill the frame between them (left of each plot); Euler, RK4 and adaptive step every pixel's ray (right; timed on an even sample of pixels). Upper plots: the largest displacement of an edge at {} angles. A cross at the top: an edge was lost.",
+        "{} at {width} × {height}, edges asked to be right to {:?} pixels. Tables and exact draw isoradial curves, to several tolerances, and fill the frame between them (left of each plot); Euler, RK4 and adaptive step every pixel's ray (right; timed on an even sample of pixels). Upper plots: the largest displacement of an edge at {} angles. A cross at the top: an edge was lost.",
         frame.name, frame.tolerance, frame.places
     );
     let title = "Scene: what a frame costs, and how far its edges are off";

@@ -11,7 +11,6 @@ pub(super) const GREY: Colour = Colour(110, 110, 110);
 pub(super) const LIGHT: Colour = Colour(224, 224, 224);
 const ORANGE: Colour = Colour(230, 159, 0);
 const SKY: Colour = Colour(86, 180, 233);
-const GREEN: Colour = Colour(0, 158, 115);
 const BLUE: Colour = Colour(0, 114, 178);
 const VERMILION: Colour = Colour(213, 94, 0);
 const PURPLE: Colour = Colour(204, 121, 167);
@@ -20,12 +19,10 @@ const PURPLE: Colour = Colour(204, 121, 167);
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Marker {
     Disc,
-    Ring,
     Square,
     Diamond,
     Up,
     Down,
-    Plus,
     Cross,
     Star,
 }
@@ -51,16 +48,14 @@ impl Look {
             Method::TableDraft => (BLUE, Marker::Up, Some((7.0, 2.5)), "table draft"),
             Method::TableStandard => (BLUE, Marker::Up, None, "table standard"),
             Method::TableFine => (BLUE, Marker::Up, Some((2.0, 2.0)), "table fine"),
-            Method::Nearest => (SKY, Marker::Down, Some((8.0, 3.0)), "nearest node"),
-            Method::Linear => (GREEN, Marker::Plus, Some((4.0, 3.0)), "linear"),
-            Method::Cubic => (GREY, Marker::Ring, Some((1.5, 2.5)), "cubic"),
+            Method::TableScaled => (SKY, Marker::Down, Some((8.0, 3.0)), "tables of other sizes"),
         };
         let short = match method {
             Method::Adaptive => "adaptive",
             Method::TableDraft => "draft",
             Method::TableStandard => "standard",
             Method::TableFine => "fine",
-            Method::Nearest => "nearest",
+            Method::TableScaled => "other sizes",
             _ => label,
         };
         Self {

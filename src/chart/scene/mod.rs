@@ -1,6 +1,6 @@
 //! The third panel: what a scene's frame costs, and how right it is.
 //!
-//! Tables, grids and the exact method draw isoradial curves, to several tolerances, and fill the frame between them;
+//! Tables and the exact method draw isoradial curves, to several tolerances, and fill the frame between them;
 //! the integrators step every pixel's ray. Asked of both: where each edge of the disk is, order by order, in pixels
 //! from where it should be (`edges.rs`), and how many pixels are wrong (`frames.rs`). Times are of whole frames on
 //! one thread: curves and frame together, or the time of an even sample of pixels for those that step each.
