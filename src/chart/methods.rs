@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::Effort;
+use super::measurement::Effort;
 use crate::orbit::exact::Exact;
 use crate::orbit::integrate::{Adaptive, FixedStep, Scheme};
 use crate::orbit::{Orbits, Ray};

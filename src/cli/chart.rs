@@ -8,7 +8,7 @@ use clap::Args;
 use super::picture::Destination;
 use super::progress::{Report, duration};
 use super::{Misuse, Threads, print, start_threads, target};
-use crate::chart::{Chart, Effort, draw, write_csv};
+use crate::chart::{ChartData, Effort, draw, write_csv};
 use crate::output::write_whole;
 use crate::scene::{DEFAULT_SCENE, Scene};
 
@@ -52,7 +52,7 @@ pub(super) fn run(args: &ChartArgs, report: Report) -> anyhow::Result<()> {
         })?;
     }
     destination.write(svg.as_bytes())?;
-    let summary = format!("{}\n", chart.frame.summary());
+    let summary = format!("{}\n", chart.scene.summary());
     match destination {
         Destination::Stdout => report.note(summary.trim_end()),
         Destination::File(_) => print(&summary)?,
@@ -87,7 +87,7 @@ fn check_csv(path: &Path, figure: &Path, scene: &Path) -> anyhow::Result<()> {
 }
 
 /// Measures, with a bar.
-fn measure(args: &ChartArgs, scene: &Scene, report: Report) -> anyhow::Result<Chart> {
+fn measure(args: &ChartArgs, scene: &Scene, report: Report) -> anyhow::Result<ChartData> {
     const STEPS: f64 = 100.0;
     let bar = report.bar(STEPS as u64, "", "%");
     let progress = |what: &'static str, share: f64| {
@@ -103,5 +103,5 @@ fn measure(args: &ChartArgs, scene: &Scene, report: Report) -> anyhow::Result<Ch
     // Of what XML cannot hold nothing is left.
     let is_odd = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
     let name = name.to_string_lossy().replace(is_odd, "\u{fffd}");
-    Ok(Chart::measure(scene, name, effort, &progress)?)
+    Ok(ChartData::measure(scene, name, effort, &progress)?)
 }
