@@ -10,11 +10,11 @@ use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
 use darkness::render::{coverage, mask};
 use darkness::scene::{Scene, View, builtins};
-use darkness::table::{Lookup, Spec, generate};
+use darkness::table::{Lookup, Spec, Table};
 use interleaved::{Contender, compare};
 
 fn main() {
-    let Some(table) = Spec::named("standard").and_then(|spec| generate(&spec, &|_, _| ())) else {
+    let Ok(table) = Table::generate(&Spec::standard()) else {
         return;
     };
     let lookup = table.lookup();

@@ -11,7 +11,7 @@ use darkness::orbit::integrate::{FixedStep, Scheme};
 use darkness::render::mask::{WHITE, render, render_every_pixel};
 use darkness::render::{RenderError, pixelwise};
 use darkness::scene::{Scene, View, builtins};
-use darkness::table::{Spec, generate};
+use darkness::table::{Spec, Table};
 use interleaved::{Contender, compare};
 
 /// The frame, or none where there is no memory for it.
@@ -37,7 +37,7 @@ fn rk4_frame(scene: &Scene, view: &View) -> Vec<u8> {
 }
 
 fn main() {
-    let Some(table) = Spec::named("standard").and_then(|spec| generate(&spec, &|_, _| ())) else {
+    let Ok(table) = Table::generate(&Spec::standard()) else {
         return;
     };
     let lookup = table.lookup();

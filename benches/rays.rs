@@ -7,17 +7,17 @@ mod interleaved;
 
 use darkness::orbit::exact::Exact;
 use darkness::orbit::integrate::{Adaptive, FixedStep, Scheme};
-use darkness::orbit::invariants::{Orbit, Point};
+use darkness::orbit::invariants::{Orbit, OrbitPoint};
 use darkness::orbit::path::SweptAngles;
 use darkness::orbit::{Orbits, Ray};
-use darkness::table::{Spec, generate};
+use darkness::table::{Spec, Table};
 use interleaved::{Contender, compare};
 
 const RAYS: usize = 4096;
 const ROUNDS: usize = 101;
 
 /// Rays of a camera at r = 30 that cross r = 6, their impact parameters spread evenly over (0, `widest`).
-fn rays(narrowest: f64, widest: f64) -> Vec<(Ray, Orbit, Point)> {
+fn rays(narrowest: f64, widest: f64) -> Vec<(Ray, Orbit, OrbitPoint)> {
     let u0 = 1.0 / 30.0;
     let mut state = 1_u64;
     let mut rays = Vec::with_capacity(RAYS);
@@ -42,7 +42,7 @@ fn rays(narrowest: f64, widest: f64) -> Vec<(Ray, Orbit, Point)> {
 fn main() {
     let tables: Vec<_> = Spec::NAMES
         .iter()
-        .filter_map(|name| generate(&Spec::named(name)?, &|_, _| ()))
+        .filter_map(|name| Table::generate(&Spec::named(name)?).ok())
         .collect();
     for (title, narrowest, widest) in [
         ("rays that cross r = 6, 0 < b < 6.5", 0.0, 6.5),
@@ -51,7 +51,7 @@ fn main() {
         ("of them, close to radial: 0 < b < 1.4", 0.0, 1.4),
     ] {
         let rays = rays(narrowest, widest);
-        let direct = |angles: &dyn Fn(&Orbit, Point) -> f64| {
+        let direct = |angles: &dyn Fn(&Orbit, OrbitPoint) -> f64| {
             rays.iter()
                 .map(|(_, orbit, point)| angles(orbit, *point))
                 .sum()
@@ -83,9 +83,9 @@ fn main() {
 }
 
 /// The whole question, fate and end included: what the integrators cannot help answering.
-fn whole_rays(rays: &[(Ray, Orbit, Point)]) {
+fn whole_rays(rays: &[(Ray, Orbit, OrbitPoint)]) {
     let rays = &rays[..512];
-    let Some(table) = Spec::named("standard").and_then(|spec| generate(&spec, &|_, _| ())) else {
+    let Ok(table) = Table::generate(&Spec::standard()) else {
         return;
     };
     let follow = |orbits: &dyn Orbits| -> f64 {

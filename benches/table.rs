@@ -4,19 +4,19 @@
 
 mod interleaved;
 
-use darkness::table::{Spec, Table, generate, open, save};
+use darkness::table::{Spec, Table};
 use interleaved::{Contender, compare};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = tempfile::tempdir()?;
     for name in Spec::NAMES {
         let spec = Spec::named(name).ok_or("no such table")?;
-        let made = generate(&spec, &|_, _| ()).ok_or("no such grid")?;
+        let made = Table::generate(&spec)?;
         let path = folder.path().join(name);
-        save(&made, &path)?;
+        made.save(&path)?;
         let bytes = made.bytes().len();
         let error = made.metadata().measured_error;
-        let opened = || open(&path).map_or(0.0, |table| table.metadata().measured_error);
+        let opened = || Table::open(&path).map_or(0.0, |table| table.metadata().measured_error);
         let read = || std::fs::read(&path).map_or(0.0, |bytes| bytes.len() as f64);
         compare(
             &format!("{name}: {bytes} bytes, error {error:.1e}"),
@@ -34,9 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 Contender {
                     name: "making it, error measured",
                     run: Box::new(|| {
-                        generate(&spec, &|_, _| ())
-                            .as_ref()
-                            .map_or(0.0, |t: &Table<_>| t.metadata().measured_error)
+                        Table::generate(&spec).map_or(0.0, |table| table.metadata().measured_error)
                     }),
                 },
             ],

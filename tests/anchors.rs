@@ -15,7 +15,7 @@ mod tables;
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use darkness::orbit::exact::Exact;
-use darkness::orbit::invariants::{CRITICAL_E2, Orbit, Point};
+use darkness::orbit::invariants::{CRITICAL_E2, Orbit, OrbitPoint};
 use darkness::orbit::path::SweptAngles;
 use darkness::orbit::{Event, EventKind, Fate, MIN_U, Orbits, Ray};
 use darkness::table::Lookup;
@@ -71,7 +71,7 @@ impl Method {
 fn from_infinity(delta: f64) -> Orbit {
     let e2 = CRITICAL_E2 + delta;
     Orbit {
-        start: Point {
+        start: OrbitPoint {
             u: MIN_U,
             slope: e2.sqrt(),
         },

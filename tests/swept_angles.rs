@@ -13,7 +13,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
 use darkness::orbit::integrate::Adaptive;
-use darkness::orbit::invariants::{CRITICAL_E2, Orbit, Point};
+use darkness::orbit::invariants::{CRITICAL_E2, Orbit, OrbitPoint};
 use darkness::orbit::path::SweptAngles;
 use darkness::orbit::{Event, EventKind, MIN_U, Orbits, Ray};
 use known_values::{KnownValue, known_values};
@@ -459,7 +459,7 @@ fn from_infinity(delta: f64) -> Orbit {
     let e2 = CRITICAL_E2 + delta;
     let slope = e2.sqrt();
     Orbit {
-        start: Point { u: MIN_U, slope },
+        start: OrbitPoint { u: MIN_U, slope },
         e2,
         delta,
         ..Orbit::new(Ray::new(MIN_U, if delta < 0.0 { 0.1 } else { 1.0 }).unwrap())

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use animated::{darkness, done, files, refused, with_animation};
 use darkness::output::write_whole;
-use darkness::table::{self, Spec, TableError, generate};
+use darkness::table::{Spec, Table, TableError, format};
 use tempfile::tempdir;
 
 fn start(folder: &Path, args: &[&str]) -> Child {
@@ -26,7 +26,7 @@ fn start(folder: &Path, args: &[&str]) -> Child {
 
 /// Whether there is a table, which then is whole.
 fn is_there(path: &Path) -> bool {
-    match table::open(path) {
+    match Table::open(path) {
         Ok(_) => true,
         Err(TableError::Missing { .. }) => false,
         Err(error) => panic!("{error}"),
@@ -58,7 +58,7 @@ fn killed_at_any_moment_the_table_is_the_old_one_or_the_new() {
     }
     assert!(kills > 0);
     done(here, &make);
-    let whole = generate(&Spec::named("draft").unwrap(), &|_, _| ()).unwrap();
+    let whole = Table::generate(&Spec::draft()).unwrap();
     let left = files(here);
     assert_eq!(
         left.keys().map(String::as_str).collect::<Vec<_>>(),
@@ -91,14 +91,14 @@ fn several_at_once_make_one_whole_table() {
 fn a_table_that_is_replaced_while_it_is_mapped_stays_what_it_was() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("a.table");
-    let made = |name| generate(&Spec::named(name).unwrap(), &|_, _| ()).unwrap();
-    table::save(&made("draft"), &path).unwrap();
-    let mapped = table::open(&path).unwrap();
+    let made = |name| Table::generate(&Spec::named(name).unwrap()).unwrap();
+    made("draft").save(&path).unwrap();
+    let mapped = Table::open(&path).unwrap();
     let before = mapped.bytes().to_vec();
-    table::save(&made("standard"), &path).unwrap();
+    made("standard").save(&path).unwrap();
     assert!(mapped.bytes() == before);
     assert_eq!(mapped.metadata().spec.name, "draft");
-    assert_eq!(table::open(&path).unwrap().metadata().spec.name, "standard");
+    assert_eq!(Table::open(&path).unwrap().metadata().spec.name, "standard");
 }
 
 /// Guards against a signal for a table that somebody cuts short: one that is read into memory is not his any more.
@@ -169,7 +169,7 @@ impl<W: Write> Write for Filling<W> {
 fn a_disk_that_fills_up_after_any_byte_leaves_the_old_table_and_nothing_else() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("a.table");
-    let made = generate(&Spec::named("draft").unwrap(), &|_, _| ()).unwrap();
+    let made = Table::generate(&Spec::draft()).unwrap();
     let bytes = made.bytes();
     fs::write(&path, "the old one").unwrap();
     for room in 0..bytes.len() {
@@ -229,11 +229,11 @@ fn what_is_no_file_of_a_table_is_refused_at_once() {
 fn a_file_of_another_length_is_refused_before_it_is_mapped() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("a.table");
-    let whole = generate(&Spec::named("draft").unwrap(), &|_, _| ()).unwrap();
+    let whole = Table::generate(&Spec::draft()).unwrap();
     let bytes = whole.bytes();
     for length in [0, 1, 7, 8, 35, 36, 63, 64, 1000, bytes.len() - 1] {
         fs::write(&path, &bytes[..length]).unwrap();
-        let [mapped, read] = [table::open(&path).err(), table::read(&path).err()];
+        let [mapped, read] = [Table::open(&path).err(), Table::read(&path).err()];
         let [mapped, read] = [mapped, read].map(|error| error.unwrap().to_string());
         assert_eq!(mapped, read);
         let says = match length {
@@ -243,7 +243,7 @@ fn a_file_of_another_length_is_refused_before_it_is_mapped() {
         assert!(mapped.contains(&says), "{length}: {mapped}");
     }
     fs::write(&path, [bytes, b"x"].concat()).unwrap();
-    let longer = table::open(&path).unwrap_err().to_string();
+    let longer = Table::open(&path).unwrap_err().to_string();
     assert!(
         longer.contains(&format!(
             "{} bytes long and should be {}",
@@ -253,7 +253,7 @@ fn a_file_of_another_length_is_refused_before_it_is_mapped() {
         "{longer}"
     );
     fs::write(&path, bytes).unwrap();
-    assert!(table::read(&path).unwrap().bytes() == table::open(&path).unwrap().bytes());
+    assert!(Table::read(&path).unwrap().bytes() == Table::open(&path).unwrap().bytes());
 }
 
 /// Guards against memory and time for what only says that it is a table, however long it is.
@@ -263,7 +263,7 @@ fn a_terabyte_that_is_none_of_a_table_is_refused_by_its_beginning() {
     let path = folder.path().join("a.table");
     let length = 1_u64 << 40;
     let mut start = b"\x89DRK\r\n\x1A\n".to_vec();
-    for field in [table::format::VERSION, 28, crc32fast::hash(&[0; 28]), 0] {
+    for field in [format::VERSION, 28, crc32fast::hash(&[0; 28]), 0] {
         start.extend(field.to_le_bytes());
     }
     start.extend((length - 64).to_le_bytes());
@@ -276,7 +276,7 @@ fn a_terabyte_that_is_none_of_a_table_is_refused_by_its_beginning() {
         .unwrap()
         .set_len(length)
         .unwrap();
-    for error in [table::open(&path).err(), table::read(&path).err()] {
+    for error in [Table::open(&path).err(), Table::read(&path).err()] {
         let message = error.unwrap().to_string();
         assert!(message.contains("its metadata"), "{message}");
     }
@@ -342,9 +342,9 @@ fn the_documented_layout_is_the_files() {
     let reader = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reader/read_table.py");
     for name in ["draft", "standard"] {
         let spec = Spec::named(name).unwrap();
-        let made = generate(&spec, &|_, _| ()).unwrap();
+        let made = Table::generate(&spec).unwrap();
         let path = folder.path().join("a.table");
-        table::save(&made, &path).unwrap();
+        made.save(&path).unwrap();
         let read = Command::new("python3")
             .arg(reader)
             .arg(&path)

@@ -4,7 +4,7 @@
 use darkness::orbit::exact::Exact;
 use darkness::orbit::integrate::{Adaptive, FixedStep, Scheme};
 use darkness::orbit::{Orbits, Ray};
-use darkness::table::{Spec, generate};
+use darkness::table::{Spec, Table};
 
 /// Scattered and trapped rays, with their turning points ahead.
 fn turning_rays() -> Vec<Ray> {
@@ -25,7 +25,7 @@ fn turning_rays() -> Vec<Ray> {
 
 #[test]
 fn all_methods_find_the_root_at_the_same_angle() {
-    let table = generate(&Spec::named("standard").unwrap(), &|_, _| ()).unwrap();
+    let table = Table::generate(&Spec::standard()).unwrap();
     let rk4 = FixedStep::new(Scheme::Rk4, 0.005);
     let euler = FixedStep::new(Scheme::Euler, 0.0005);
     for ray in turning_rays() {
@@ -69,7 +69,7 @@ fn all_methods_find_the_root_at_the_same_angle() {
 
 #[test]
 fn rays_that_do_not_turn_have_none() {
-    let table = generate(&Spec::named("draft").unwrap(), &|_, _| ()).unwrap();
+    let table = Table::generate(&Spec::draft()).unwrap();
     let methods: [&dyn Orbits; 4] = [
         &Exact,
         &table,

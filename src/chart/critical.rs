@@ -87,7 +87,6 @@ impl CriticalPanel {
             Contestant::adaptive(1e-9),
         ];
         contestants.extend(tables.files());
-        contestants.extend(tables.standard_grids());
         contestants.push(Contestant::exact());
         let mut points = Vec::new();
         for (i, contestant) in contestants.iter().enumerate() {

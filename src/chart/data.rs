@@ -30,7 +30,7 @@ impl ChartData {
         progress: &ChartProgress<'_>,
     ) -> Result<Self, ChartError> {
         progress("generating tables", 0.0);
-        let tables = Tables::new(effort).ok_or(ChartError::Table)?;
+        let tables = Tables::new(effort)?;
         let rays = RayPanel::measure(&tables, effort, &|share| {
             progress("timing rays", 0.05 + 0.4 * share);
         });

@@ -4,6 +4,7 @@ use core::fmt;
 
 use super::methods::Method;
 use crate::render::RenderError;
+use crate::table::SpecError;
 
 /// How thoroughly to measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,8 +22,8 @@ pub type ChartProgress<'a> = dyn Fn(&'static str, f64) + Sync + 'a;
 #[derive(Debug, thiserror::Error)]
 pub enum ChartError {
     /// A table could not be generated.
-    #[error("a table to measure with cannot be generated")]
-    Table,
+    #[error(transparent)]
+    Table(#[from] SpecError),
     /// The thread on which times are taken could not be started.
     #[error("the thread to measure on cannot be started ({0})")]
     Threads(String),

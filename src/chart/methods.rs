@@ -8,7 +8,7 @@ use crate::orbit::integrate::{Adaptive, FixedStep, Scheme};
 use crate::orbit::{Orbits, Ray};
 use crate::render::pixelwise;
 use crate::scene::{Scene, View};
-use crate::table::{Cubic, Grid, Interpolation, Linear, Memory, Nearest, Spec, Table, generate};
+use crate::table::{Spec, SpecError, Table};
 
 /// A way to answer what happens to a ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -27,23 +27,17 @@ pub enum Method {
     TableStandard,
     /// The fine table.
     TableFine,
-    /// The table's charts, read at the nearest node.
-    Nearest,
-    /// The table's charts, read by bilinear interpolation.
-    Linear,
-    /// The table's charts, read by cubic splines.
-    Cubic,
+    /// Tables of the standard one's nodes along each axis times some factors.
+    TableScaled,
 }
 
 impl Method {
     /// All of them, in the order they are drawn.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 8] = [
         Self::Euler,
         Self::Rk4,
         Self::Adaptive,
-        Self::Nearest,
-        Self::Linear,
-        Self::Cubic,
+        Self::TableScaled,
         Self::TableDraft,
         Self::TableStandard,
         Self::TableFine,
@@ -60,9 +54,7 @@ impl Method {
             Self::TableDraft => "table-draft",
             Self::TableStandard => "table-standard",
             Self::TableFine => "table-fine",
-            Self::Nearest => "nearest",
-            Self::Linear => "linear",
-            Self::Cubic => "cubic",
+            Self::TableScaled => "table-scaled",
         }
     }
 }
@@ -137,6 +129,13 @@ impl<'a> Contestant<'a> {
         Self::new(Method::Adaptive, setting, Adaptive::new(tolerance))
     }
 
+    /// A table.
+    pub fn table(method: Method, table: &'a Table) -> Self {
+        let nodes = table.metadata().spec.nodes();
+        let setting = format!("nodes={nodes} bytes={}", table.bytes().len());
+        Self::new(method, setting, table.lookup())
+    }
+
     /// The exact method.
     pub fn exact() -> Self {
         Self::new(Method::Exact, String::new(), Exact)
@@ -206,110 +205,57 @@ impl Stepper {
     }
 }
 
-/// The tables and grids that are compared, in memory.
+/// The tables that are compared, in memory.
 #[derive(Debug)]
 pub struct Tables {
-    files: Vec<(Method, Table<Memory>)>,
-    grids: Vec<Grids>,
+    files: Vec<(Method, Table)>,
+    scaled: Vec<Table>,
 }
-
-/// One grid, to be read in three ways.
-#[derive(Debug)]
-struct Grids {
-    nodes: u64,
-    nearest: Grid<Nearest>,
-    linear: Grid<Linear>,
-    cubic: Grid<Cubic>,
-}
-
-/// The standard table's specification.
-const STANDARD: &str = "standard";
 
 impl Tables {
-    /// Makes them: the three tables that come with the program, and grids of the standard table's node counts along
-    /// each axis times some factors. `None` where one cannot be made.
-    pub fn new(effort: Effort) -> Option<Self> {
+    /// Makes them: the program's own three tables, and tables of the standard one's nodes along each axis times some
+    /// factors.
+    ///
+    /// # Errors
+    /// [`SpecError`] where one of them cannot be made.
+    pub fn new(effort: Effort) -> Result<Self, SpecError> {
         let factors: &[f64] = match effort {
             Effort::Quick => &[0.125, 0.25, 0.5, 1.0, 2.0],
             Effort::Full => &[0.125, 0.25, 0.5, 1.0, 2.0, 4.0],
         };
-        let methods = [Method::TableDraft, Method::TableStandard, Method::TableFine];
-        let files = methods.into_iter().zip(Spec::NAMES).map(|(method, name)| {
-            let table = generate(&Spec::named(name)?, &|_, _| ())?;
-            Some((method, table))
-        });
-        let standard = Spec::named(STANDARD)?;
-        let grids = factors.iter().map(|&factor| {
-            let spec = standard.scaled(factor);
-            Some(Grids {
-                nodes: spec.nodes(),
-                nearest: Grid::new(&spec, Nearest)?,
-                linear: Grid::new(&spec, Linear)?,
-                cubic: Grid::new(&spec, Cubic)?,
-            })
-        });
-        Some(Self {
-            files: files.collect::<Option<_>>()?,
-            grids: grids.collect::<Option<_>>()?,
+        let files = [
+            (Method::TableDraft, Spec::draft()),
+            (Method::TableStandard, Spec::standard()),
+            (Method::TableFine, Spec::fine()),
+        ];
+        let files = files
+            .into_iter()
+            .map(|(method, spec)| Ok((method, Table::generate(&spec)?)));
+        let scaled = factors
+            .iter()
+            .map(|&factor| Table::generate(&Spec::standard().scaled(factor)));
+        Ok(Self {
+            files: files.collect::<Result<_, SpecError>>()?,
+            scaled: scaled.collect::<Result<_, SpecError>>()?,
         })
     }
 
-    /// The three tables, as they are.
-    pub fn tables(&self) -> &[(Method, Table<Memory>)] {
+    /// Returns the program's own three tables.
+    pub fn tables(&self) -> &[(Method, Table)] {
         &self.files
     }
 
-    /// The three tables.
+    /// Returns a contestant for each of the program's own three tables.
     pub fn files(&self) -> impl Iterator<Item = Contestant<'_>> {
-        self.files.iter().map(|(method, table)| {
-            let nodes = table.metadata().spec.nodes();
-            let setting = format!("nodes={nodes} bytes={}", table.bytes().len());
-            Contestant::new(*method, setting, table.lookup())
-        })
+        self.files
+            .iter()
+            .map(|(method, table)| Contestant::table(*method, table))
     }
 
-    /// Every grid, read in all three ways.
-    pub fn grids(&self) -> impl Iterator<Item = Contestant<'_>> {
-        self.grids.iter().flat_map(Grids::contestants)
-    }
-
-    /// The grid of the standard table's own size, read in all three ways.
-    pub fn standard_grids(&self) -> impl Iterator<Item = Contestant<'_>> {
-        self.standard().into_iter().flat_map(Grids::contestants)
-    }
-
-    /// The same as they are.
-    pub fn standard_grid(&self) -> Option<(&Grid<Nearest>, &Grid<Linear>, &Grid<Cubic>)> {
-        let Grids {
-            nearest,
-            linear,
-            cubic,
-            ..
-        } = self.standard()?;
-        Some((nearest, linear, cubic))
-    }
-
-    fn standard(&self) -> Option<&Grids> {
-        let nodes = Spec::named(STANDARD)?.nodes();
-        self.grids.iter().find(|grids| grids.nodes == nodes)
-    }
-}
-
-impl Grids {
-    fn contestants(&self) -> [Contestant<'_>; 3] {
-        [
-            self.contestant(Method::Nearest, &self.nearest),
-            self.contestant(Method::Linear, &self.linear),
-            self.contestant(Method::Cubic, &self.cubic),
-        ]
-    }
-
-    fn contestant<'a, K: Interpolation>(
-        &self,
-        method: Method,
-        grid: &'a Grid<K>,
-    ) -> Contestant<'a> {
-        let setting = format!("nodes={} bytes={}", self.nodes, grid.bytes());
-        Contestant::new(method, setting, grid.lookup())
+    /// Returns a contestant for each of the scaled tables.
+    pub fn scaled(&self) -> impl Iterator<Item = Contestant<'_>> {
+        self.scaled
+            .iter()
+            .map(|table| Contestant::table(Method::TableScaled, table))
     }
 }

@@ -124,7 +124,7 @@ fn contestants(tables: &Tables, effort: Effort, baseline_step: f64) -> Vec<Conte
     all.extend(rk4.iter().map(|&h| Contestant::fixed(Scheme::Rk4, h)));
     all.extend(adaptive.iter().map(|&t| Contestant::adaptive(t)));
     all.extend(tables.files());
-    all.extend(tables.grids());
+    all.extend(tables.scaled());
     all.push(Contestant::exact());
     all
 }

@@ -1,29 +1,29 @@
-//! The method that answers what happens to a ray, and the table it may need.
+//! The method by which rays are followed, and the table that it may need.
 
 use std::fmt;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use memmap2::Mmap;
 
 use super::Misuse;
 use super::progress::{Report, warn};
+use super::remedy::with_remedy;
 use crate::orbit::integrate::Adaptive;
-use crate::table::{self, Lookup, Memory, Metadata, Spec, Table, TableError};
+use crate::table::{self, Spec, SpecError, Table, TableError};
 
-/// The table that is good for rays of all kinds.
+/// The table for rays of all kinds.
 pub(super) const DEFAULT_TABLE: &str = "standard";
 
-/// Names the table where `--table` does not.
+/// The environment variable that names the table where `--table` does not.
 const TABLE_VARIABLE: &str = "DARKNESS_TABLE";
 
 const TABLE_HELP: &str = "The table to read with --method table [env: DARKNESS_TABLE] \
     [default: tables/standard.table; a picture that needs less or more takes tables/draft.table or tables/fine.table; \
     made where it is missing]";
 
-/// What [`Adaptive`] can be asked for: above, it takes the upper bound; at the lower one steps are long since as
-/// short as helps.
+/// The tolerances that [`Adaptive`] can be given. Above them it takes the upper bound; at the lower bound its steps are
+/// as short as helps.
 const TOLERANCES: RangeInclusive<f64> = 1e-13..=1e-3;
 
 /// The options of every verb that follows rays.
@@ -34,22 +34,23 @@ pub(super) struct MethodArgs {
     method: MethodName,
     #[arg(long, value_name = "FILE", help = TABLE_HELP)]
     table: Option<PathBuf>,
-    /// Read the table into memory, in place of mapping its file: for network disks, and for files that others may cut short
+    /// Read the table into memory instead of mapping its file: for network disks, and for files that others may cut
+    /// short
     #[arg(long)]
     no_mmap: bool,
-    /// The error aimed at in an angle by --method integrate, in radians, 1e-13 to 1e-3; rays that wind for more than
-    /// ten radians near the photon sphere may miss it, and their fate [default: 1e-9]
+    /// The error of an angle that --method integrate aims at, in radians, 1e-13 to 1e-3. Rays that wind for more than
+    /// ten radians near the photon sphere may have larger errors, or another fate [default: 1e-9]
     #[arg(long, value_name = "T", value_parser = tolerance)]
     integrate_tolerance: Option<f64>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum MethodName {
-    /// Read from a table, solved beforehand
+    /// Read rays from a table, solved beforehand
     Table,
-    /// Elliptic integrals, ray by ray
+    /// Compute elliptic integrals, ray by ray
     Exact,
-    /// The equation itself, integrated ray by ray
+    /// Integrate the equation itself, ray by ray
     Integrate,
 }
 
@@ -60,64 +61,32 @@ fn tolerance(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A method whose options are checked; what it needs is there, or is known to be makable.
+/// A method whose options have been checked, and what it still needs.
 #[derive(Debug)]
 pub(super) enum Checked {
-    /// Ready.
+    /// It needs nothing.
     Ready(Method),
-    /// The table of that name is yet to be made.
+    /// It needs the table of that name, which has to be made.
     TableMissing { name: &'static str, path: PathBuf },
 }
 
 /// A method, ready to follow rays.
 #[derive(Debug)]
 pub(super) enum Method {
-    Table(AnyTable),
-    /// In place of a table, where no table is good enough.
+    Table(Table),
+    /// Exact curves, where no table is accurate enough.
     NoTable,
     Exact,
     Integrate(Adaptive),
 }
 
-/// A table: a file that is mapped, or numbers in memory.
-#[derive(Debug)]
-pub(super) enum AnyTable {
-    Mapped(Table<Mmap>),
-    Held(Table<Memory>),
-}
-
-impl AnyTable {
-    /// The table, ready for lookups.
-    pub(super) fn lookup(&self) -> Lookup<'_> {
-        match self {
-            Self::Mapped(table) => table.lookup(),
-            Self::Held(table) => table.lookup(),
-        }
-    }
-
-    /// The table's file.
-    pub(super) fn bytes(&self) -> &[u8] {
-        match self {
-            Self::Mapped(table) => table.bytes(),
-            Self::Held(table) => table.bytes(),
-        }
-    }
-
-    pub(super) fn metadata(&self) -> &Metadata {
-        match self {
-            Self::Mapped(table) => table.metadata(),
-            Self::Held(table) => table.metadata(),
-        }
-    }
-}
-
 impl MethodArgs {
-    /// Checks the options, and the table's file to its last byte. Where nobody names a table, the one called `needed`
-    /// is taken, which is none where no table is good enough.
+    /// Checks the options and every byte of the table's file. Where the user names no table, the one called `needed` is
+    /// taken; it is `None` where no table is accurate enough.
     ///
     /// # Errors
-    /// A misuse, or a table that cannot be read. A damaged table is never replaced unasked, nor is one made where the
-    /// user names a file: only the default one is.
+    /// A misuse, or a table that cannot be read. Only a missing default table is made unasked: a damaged table is never
+    /// replaced, and a file that the user names is never created.
     pub(super) fn check(&self, needed: Option<&'static str>) -> anyhow::Result<Checked> {
         if self.integrate_tolerance.is_some() && self.method != MethodName::Integrate {
             return Err(Misuse::ToleranceUnused.into());
@@ -132,81 +101,82 @@ impl MethodArgs {
                     .map_or_else(Adaptive::default, Adaptive::new),
             ),
             MethodName::Table => {
-                let Some(place) = self.place(needed) else {
+                let Some(file) = self.table_file(needed) else {
                     return Ok(Checked::Ready(Method::NoTable));
                 };
                 let opened = if self.no_mmap {
-                    table::read(&place.path).map(AnyTable::Held)
+                    Table::read(&file.path)
                 } else {
-                    table::open(&place.path).map(AnyTable::Mapped)
+                    Table::open(&file.path)
                 };
                 match (opened, needed) {
                     (Ok(table), _) => Method::Table(table),
                     (Err(TableError::Missing { path }), Some(name))
-                        if place.origin == Origin::Default =>
+                        if file.named_by == NamedBy::Default =>
                     {
                         return Ok(Checked::TableMissing { name, path });
                     }
-                    (Err(error), _) if place.origin == Origin::Variable => {
+                    (Err(error), _) if file.named_by == NamedBy::Variable => {
                         anyhow::bail!(
-                            "{error} (the environment's {TABLE_VARIABLE} names this file)"
+                            "{} (the environment's {TABLE_VARIABLE} names this file)",
+                            with_remedy(&error)
                         )
                     }
-                    (Err(error), _) => return Err(error.into()),
+                    (Err(error), _) => return Err(with_remedy(&error)),
                 }
             }
         };
         Ok(Checked::Ready(method))
     }
 
-    /// Whether rays are read from a table, or from curves drawn with one.
+    /// Returns whether rays are read from a table, or from curves made with one.
     pub(super) fn is_table(&self) -> bool {
         self.method == MethodName::Table
     }
 
-    /// The table's file, where the method reads one.
+    /// Returns the path of the table's file, where the method reads one.
     pub(super) fn table_path(&self, needed: Option<&'static str>) -> Option<PathBuf> {
-        let place = self.is_table().then(|| self.place(needed))?;
-        place.map(|place| place.path)
+        let file = self.is_table().then(|| self.table_file(needed))?;
+        file.map(|file| file.path)
     }
 
-    /// Flag, environment, default. An empty variable counts as none, as everywhere.
-    fn place(&self, needed: Option<&str>) -> Option<Place> {
+    /// Finds the table's file: named by the flag, by the environment, or by default. An empty variable counts as none.
+    fn table_file(&self, needed: Option<&str>) -> Option<TableFile> {
         let variable = || std::env::var_os(TABLE_VARIABLE).filter(|name| !name.is_empty());
-        let flag = self.table.clone().map(|path| (path, Origin::Flag));
-        let named = flag.or_else(|| variable().map(|path| (path.into(), Origin::Variable)));
-        let default = || needed.map(|name| (table::default_path(name), Origin::Default));
-        let (path, origin) = named.or_else(default)?;
-        Some(Place { path, origin })
+        let flag = self.table.clone().map(|path| (path, NamedBy::Flag));
+        let named = flag.or_else(|| variable().map(|path| (path.into(), NamedBy::Variable)));
+        let default = || needed.map(|name| (table::default_path(name), NamedBy::Default));
+        let (path, named_by) = named.or_else(default)?;
+        Some(TableFile { path, named_by })
     }
 }
 
-/// A table's file, and who named it.
-struct Place {
+/// A table's file, and what named it.
+struct TableFile {
     path: PathBuf,
-    origin: Origin,
+    named_by: NamedBy,
 }
 
 #[derive(Debug, PartialEq, Eq)]
-enum Origin {
+enum NamedBy {
     Flag,
     Variable,
     Default,
 }
 
 impl Checked {
-    /// The method, if nothing is missing.
+    /// Returns the method, if nothing is missing.
     ///
     /// # Errors
-    /// [`TableError::Missing`]
-    pub(super) fn without_making(self) -> Result<Method, TableError> {
+    /// A table that is missing.
+    pub(super) fn without_making(self) -> anyhow::Result<Method> {
         match self {
             Self::Ready(method) => Ok(method),
-            Self::TableMissing { path, .. } => Err(TableError::Missing { path }),
+            Self::TableMissing { path, .. } => Err(with_remedy(&TableError::Missing { path })),
         }
     }
 
-    /// The method, after its table is made where it is missing.
+    /// Returns the method, and makes its table first where it is missing.
     ///
     /// # Errors
     /// A table that cannot be made.
@@ -216,26 +186,26 @@ impl Checked {
             Self::TableMissing { name, path } => (name, path),
         };
         report.note(format_args!(
-            "{} is not there yet: making it, this once",
+            "{} is not there yet: making it once",
             path.display()
         ));
         let table = make(&spec(name)?, report)?;
-        if let Err(error) = table::save(&table, &path) {
+        if let Err(error) = table.save(&path) {
             let reason = match error {
                 TableError::Unwritable { source, .. } => source.to_string(),
                 other => other.to_string(),
             };
             warn(format_args!(
-                "{}: the table cannot be kept ({reason}); this run goes on with it in memory, the next will have to make it again",
+                "{}: the table cannot be kept ({reason}); this run uses it from memory, and the next will make it again",
                 path.display()
             ));
         }
-        Ok(Method::Table(AnyTable::Held(table)))
+        Ok(Method::Table(table))
     }
 }
 
 impl Method {
-    /// What a frame's bytes depend on, beside its scene: the SHA-256 of the table's file, or the method in place of one.
+    /// Returns what a frame's bytes depend on besides its scene: the SHA-256 of the table's file, or the method's name.
     pub(super) fn fingerprint(&self) -> String {
         match self {
             Self::Table(table) => hex(table.bytes()),
@@ -246,7 +216,7 @@ impl Method {
     }
 }
 
-/// The SHA-256 of some bytes, as hexadecimal digits.
+/// Returns the SHA-256 of some bytes, in hexadecimal.
 pub(super) fn hex(bytes: &[u8]) -> String {
     use std::fmt::Write;
 
@@ -273,34 +243,28 @@ impl fmt::Display for Method {
     }
 }
 
-/// The specification called `name`.
+/// Returns the specification called `name`.
 ///
 /// # Errors
-/// A name that is none of [`Spec::NAMES`].
+/// A name that is not one of [`Spec::NAMES`].
 pub(super) fn spec(name: &str) -> anyhow::Result<Spec> {
     Spec::named(name).ok_or_else(|| {
         anyhow::anyhow!(
-            "there is no specification of a table called {name}, only {}",
+            "there is no table called {name}; the tables are {}",
             Spec::NAMES.join(", ")
         )
     })
 }
 
-/// Makes a table, with a bar.
+/// Makes a table and shows a progress bar.
 ///
 /// # Errors
-/// A grid that no table can have.
-pub(super) fn make(spec: &Spec, report: Report) -> anyhow::Result<Table<Memory>> {
+/// A specification that no table can have.
+pub(super) fn make(spec: &Spec, report: Report) -> Result<Table, SpecError> {
     let bar = report.bar(0, "making the table", "rows");
-    let made = table::generate(spec, &|_, total| {
+    Table::generate_with_progress(spec, &|_, total| {
         bar.set_length(total);
-        // Threads finish rows in any order; counted here, the bar never runs backwards.
+        // Threads finish rows in any order. Counted here, the bar never runs backwards.
         bar.inc(1);
-    });
-    made.ok_or_else(|| {
-        anyhow::anyhow!(
-            "the table {} asks for a grid that no table can have",
-            spec.name
-        )
     })
 }

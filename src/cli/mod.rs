@@ -10,6 +10,8 @@ mod job;
 mod method;
 mod picture;
 mod progress;
+pub mod rays;
+mod remedy;
 mod render;
 mod scene;
 mod table;

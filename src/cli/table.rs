@@ -1,4 +1,4 @@
-//! `darkness table`: makes tables, tells what is in them, and verifies them.
+//! `darkness table`: makes, inspects and verifies tables.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -10,12 +10,13 @@ use serde::Serialize;
 
 use super::method::{self, DEFAULT_TABLE};
 use super::progress::{Report, duration};
+use super::remedy::with_remedy;
 use super::{Misuse, StdoutError, Threads, start_threads, target};
-use crate::table::{self, Metadata, Nodes, Spec, TableError, format};
+use crate::table::{self, ChartNodes, Metadata, Spec, Table, TableError, format};
 
 /// Make a table of all light rays, or inspect or verify one
 ///
-/// draft is right to 1e-6 radians, standard to 1e-9, fine to 1e-12.
+/// The error of an angle is at most 1e-6 radians in draft, 1e-9 in standard and 1e-12 in fine.
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true)]
 pub(super) struct TableArgs {
@@ -24,7 +25,7 @@ pub(super) struct TableArgs {
     /// Which table to make
     #[arg(value_name = "NAME", default_value = DEFAULT_TABLE, value_parser = PossibleValuesParser::new(Spec::NAMES))]
     name: String,
-    /// Where the table goes [default: tables/NAME.table under the current folder]
+    /// Where to write the table [default: tables/NAME.table under the current folder]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Replace the file if it exists
@@ -36,7 +37,7 @@ pub(super) struct TableArgs {
 
 #[derive(Debug, Subcommand)]
 enum Action {
-    /// Print what a table says of itself
+    /// Print a table's description of itself
     Inspect {
         /// The table's file
         file: PathBuf,
@@ -44,7 +45,7 @@ enum Action {
         #[arg(long)]
         json: bool,
     },
-    /// Check a table: every byte against one made anew, and its error
+    /// Compare a table byte by byte with one made anew, and measure its error again
     Verify {
         /// The table's file
         file: PathBuf,
@@ -75,7 +76,7 @@ fn make(args: &TableArgs, report: Report) -> anyhow::Result<()> {
     target::check_with_parents(&path)?;
     if !args.force && is_made(&path, &spec)? {
         report.note(format_args!(
-            "{}: the table {} is already there, nothing is to be done",
+            "{}: the table {} is already there; nothing to do",
             path.display(),
             spec.name
         ));
@@ -86,7 +87,7 @@ fn make(args: &TableArgs, report: Report) -> anyhow::Result<()> {
     let start = Instant::now();
     let table = method::make(&spec, report)?;
     let time = duration(start.elapsed());
-    table::save(&table, &path)?;
+    table.save(&path).map_err(|error| with_remedy(&error))?;
     report.note(format_args!(
         "{}: table {}, {} bytes, error {:.1e}, made in {time}",
         path.display(),
@@ -97,27 +98,27 @@ fn make(args: &TableArgs, report: Report) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Whether `path` holds the table of `spec` already.
+/// Returns whether `path` holds the table of `spec` already.
 ///
 /// # Errors
-/// Something else is there.
+/// Something else is at `path`.
 fn is_made(path: &Path, spec: &Spec) -> anyhow::Result<bool> {
-    let place = path.display();
-    match table::open(path) {
+    let name = path.display();
+    match Table::open(path) {
         Ok(found) if found.metadata().spec == *spec => Ok(true),
         Ok(found) => anyhow::bail!(
-            "{place}: another table, {}, is there already; --force replaces it",
+            "{name}: another table, {}, is there already; --force replaces it",
             found.metadata().spec.name
         ),
         Err(TableError::Missing { .. }) => Ok(false),
         Err(TableError::Unusable { problem, .. }) => {
-            anyhow::bail!("{place}: a file is there already, and {problem}; --force replaces it")
+            anyhow::bail!("{name}: a file is there already, and {problem}; --force replaces it")
         }
         Err(error) => anyhow::bail!("{error}; --force replaces the file"),
     }
 }
 
-/// What `inspect` tells.
+/// What `inspect` prints.
 #[derive(Debug, Serialize)]
 struct Inspection<'a> {
     name: &'a str,
@@ -127,16 +128,16 @@ struct Inspection<'a> {
     file_bytes: usize,
     measured_error: f64,
     measured_angles: u64,
-    grid: Grid,
+    grid: GridNodes,
 }
 
-/// Nodes of each chart.
+/// The nodes of each chart.
 #[derive(Debug, Serialize)]
-struct Grid {
-    critical: Nodes,
-    weak: Nodes,
-    trapped: Nodes,
-    radial: Nodes,
+struct GridNodes {
+    critical: ChartNodes,
+    weak: ChartNodes,
+    trapped: ChartNodes,
+    radial: ChartNodes,
 }
 
 impl<'a> Inspection<'a> {
@@ -150,7 +151,7 @@ impl<'a> Inspection<'a> {
             file_bytes,
             measured_error: metadata.measured_error,
             measured_angles: metadata.measured_angles,
-            grid: Grid {
+            grid: GridNodes {
                 critical: spec.critical,
                 weak: spec.weak,
                 trapped: spec.trapped,
@@ -176,7 +177,7 @@ impl<'a> Inspection<'a> {
             ("trapped", self.grid.trapped),
             ("radial", self.grid.radial),
         ];
-        for (name, Nodes { place, orbit }) in charts {
+        for (name, ChartNodes { place, orbit }) in charts {
             writeln!(out, "{name:<16} {place} × {orbit} nodes (place × orbit)")?;
         }
         Ok(())
@@ -184,7 +185,7 @@ impl<'a> Inspection<'a> {
 }
 
 fn inspect(file: &Path, json: bool) -> anyhow::Result<()> {
-    let table = table::open(file)?;
+    let table = Table::open(file).map_err(|error| with_remedy(&error))?;
     let inspection = Inspection::new(table.metadata(), table.bytes().len());
     let mut stdout = io::stdout().lock();
     let printed = if json {
@@ -198,22 +199,22 @@ fn inspect(file: &Path, json: bool) -> anyhow::Result<()> {
 }
 
 fn verify(file: &Path, report: Report) -> anyhow::Result<()> {
-    let table = table::open(file)?;
+    let table = Table::open(file).map_err(|error| with_remedy(&error))?;
     let metadata = table.metadata();
     let anew = method::make(&metadata.spec, report)?;
     let measured = table::measure(&metadata.spec, &table.lookup());
-    let (place, bytes) = (file.display(), table.bytes());
+    let (name, bytes) = (file.display(), table.bytes());
 
     if bytes != anew.bytes() {
         let same = bytes.iter().zip(anew.bytes()).take_while(|(a, b)| a == b);
         anyhow::bail!(
-            "{place}: the table is whole, and is not what its specification gives: made anew, it differs from byte {} on",
+            "{name}: the table is intact, but it is not the one that its specification gives: made anew, it differs from byte {} on",
             same.count()
         );
     }
     if measured.error != metadata.measured_error || measured.angles != metadata.measured_angles {
         anyhow::bail!(
-            "{place}: the table says that its error is {:e} on {} angles, and it is {:e} on {}",
+            "{name}: the table states an error of {:e} on {} angles, but it is {:e} on {}",
             metadata.measured_error,
             metadata.measured_angles,
             measured.error,
@@ -223,10 +224,10 @@ fn verify(file: &Path, report: Report) -> anyhow::Result<()> {
     let mut stdout = io::stdout().lock();
     writeln!(
         stdout,
-        "{place}: table {}, as it should be\n\
+        "{name}: table {} is right\n\
          every check of the file passes\n\
          made anew, all {} bytes are the same\n\
-         measured again, its error is {:.2e} rad, the largest of {} angles, as it says",
+         measured again, its error is the stated one: {:.2e} rad, the largest of {} angles",
         metadata.spec.name,
         bytes.len(),
         measured.error,

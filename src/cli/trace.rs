@@ -1,4 +1,4 @@
-//! `darkness trace`: what happens to each ray of a list.
+//! `darkness trace`: follows each ray of a list.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, IsTerminal, Write};
@@ -8,26 +8,27 @@ use clap::Args;
 
 use super::method::{DEFAULT_TABLE, Method, MethodArgs};
 use super::progress::{Report, warn};
+use super::rays::RayReader;
 use super::{Misuse, StdoutError, start_threads, target};
-use crate::orbit::csv::Rays;
 use crate::orbit::exact::Exact;
 use crate::orbit::{EventKind, Fate, MIN_U, OrbitError, Orbits, Ray};
 
-/// Tell what happens to single rays: CSV in, CSV out
+/// Follow single rays: CSV in, CSV out
 ///
-/// Reads CSV with a header that names the columns u0 (inverse radius where the ray starts, in inverse Schwarzschild
-/// radii) and dudphi (du/dφ there, inf and -inf allowed: straight in and straight out). Other columns, blank lines
-/// and lines that begin with # are ignored.
+/// Reads CSV with a header that names the columns u0 (the inverse radius where the ray starts, in inverse Schwarzschild
+/// radii) and dudphi (du/dφ there; inf is straight in and -inf straight out). Other columns, blank lines and lines that
+/// begin with # are ignored.
 ///
-/// Writes the columns u0,dudphi,event,radius,angle: for each ray, in the order they happen, its inbound and outbound
-/// crossings of each radius, then its capture (radius 1) or escape (radius inf), with the angle swept from the start,
-/// in radians.
+/// Writes the columns u0,dudphi,event,radius,angle. For each ray these are, in the order in which they happen, its
+/// inbound and outbound crossings of each radius, then its capture (radius 1) or escape (radius inf), each with the
+/// angle swept from the start, in radians.
 #[derive(Debug, Args)]
 pub(super) struct TraceArgs {
     /// The CSV file, or - for the standard input [default: -]
     #[arg(value_name = "FILE")]
     input: Option<PathBuf>,
-    /// A radius whose crossings are told, in Schwarzschild radii; may be given again, or several with commas
+    /// A radius whose crossings are printed, in Schwarzschild radii. Several are separated by commas, or by repeating
+    /// the option
     #[arg(
         long = "radius",
         value_name = "R",
@@ -53,17 +54,17 @@ fn radius(text: &str) -> Result<f64, String> {
     }
 }
 
-/// How many of the rows that are refused are told of one by one.
-const MOST_TOLD: u64 = 100;
+/// How many of the refused rows are reported one by one.
+const MOST_REPORTED: u64 = 100;
 
-/// What is written and read at a time.
+/// The size of the buffers in bytes.
 const BUFFER: usize = 1 << 16;
 
 /// Runs the verb.
 pub(super) fn run(args: &TraceArgs, report: Report) -> anyhow::Result<()> {
     let method = args.method.check(Some(DEFAULT_TABLE))?;
     let (input, name) = open(args.input.as_deref())?;
-    let mut rays = Rays::new(input, name)?;
+    let mut rays = RayReader::new(input, name)?;
     start_threads(None)?;
 
     let method = method.ready(report)?;
@@ -73,13 +74,13 @@ pub(super) fn run(args: &TraceArgs, report: Report) -> anyhow::Result<()> {
         Method::Exact | Method::NoTable => trace(&Exact, &mut rays, &args.radii, &mut out),
         Method::Integrate(adaptive) => trace(adaptive, &mut rays, &args.radii, &mut out),
     };
-    // What is traced is right, and stays.
+    // The rays that were traced are right, whatever went wrong later.
     let flushed = out.flush().map_err(StdoutError);
     traced?;
     Ok(flushed?)
 }
 
-/// The input, and what it is called in messages.
+/// Opens the input, and returns its name for messages.
 fn open(input: Option<&Path>) -> anyhow::Result<(Box<dyn BufRead>, String)> {
     match input {
         Some(path) if path != Path::new("-") => {
@@ -89,7 +90,7 @@ fn open(input: Option<&Path>) -> anyhow::Result<(Box<dyn BufRead>, String)> {
             check_is_not_written(&file, path)?;
             Ok((Box::new(BufReader::with_capacity(BUFFER, file)), name))
         }
-        // Without a word the program would seem to hang.
+        // Waiting for a terminal without a word, the program would seem to hang.
         None if io::stdin().is_terminal() => Err(Misuse::NoRays.into()),
         _ => {
             let name = "standard input";
@@ -101,7 +102,7 @@ fn open(input: Option<&Path>) -> anyhow::Result<(Box<dyn BufRead>, String)> {
     }
 }
 
-/// What is printed onto the end of the list would be read in its turn, without end.
+/// Refuses to print to the end of the list that is read, since each line would be read in its turn, without end.
 fn check_is_not_written(list: &File, name: &Path) -> Result<(), Misuse> {
     if list.metadata().is_ok_and(|file| target::is_stdout(&file)) {
         let (path, what) = (name.to_owned(), "list");
@@ -110,7 +111,7 @@ fn check_is_not_written(list: &File, name: &Path) -> Result<(), Misuse> {
     Ok(())
 }
 
-/// The standard input, to be asked what it is.
+/// Returns the standard input as a file, to find out what it is.
 fn stdin() -> io::Result<File> {
     #[cfg(unix)]
     let owned = std::os::fd::AsFd::as_fd(&io::stdin()).try_clone_to_owned()?;
@@ -121,7 +122,7 @@ fn stdin() -> io::Result<File> {
 
 fn trace(
     orbits: &impl Orbits,
-    rays: &mut Rays<impl BufRead>,
+    rays: &mut RayReader<impl BufRead>,
     radii: &[f64],
     out: &mut impl Write,
 ) -> anyhow::Result<()> {
@@ -131,7 +132,7 @@ fn trace(
         rows += 1;
         let followed = ray.and_then(|ray| {
             let events = orbits.follow(ray, radii);
-            let events = events.map_err(|error| rays.error(error.into()))?;
+            let events = events.map_err(|error| rays.error(&error))?;
             Ok((ray, events))
         });
         match followed {
@@ -144,7 +145,7 @@ fn trace(
             Err(error) if error.is_final() => return Err(error.into()),
             Err(error) => {
                 refused += 1;
-                if refused <= MOST_TOLD {
+                if refused <= MOST_REPORTED {
                     warn(error);
                 }
             }
@@ -152,13 +153,13 @@ fn trace(
     }
     anyhow::ensure!(
         refused == 0,
-        "{refused} of {rows} rows hold no ray that can be followed; the others are traced"
+        "{refused} of {rows} rows do not hold a ray that can be followed; the others are traced"
     );
     Ok(())
 }
 
-/// One row. `{:?}` is the shortest decimal that reads back to the same number; the angle has 17 significant digits,
-/// which do so too.
+/// Writes one row. `{:?}` prints the shortest decimal that reads back to the same number, and the angle has 17
+/// significant digits, which do so too.
 fn write_event(
     out: &mut impl Write,
     ray: Ray,

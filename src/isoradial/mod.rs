@@ -49,7 +49,7 @@ mod turns;
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use crate::orbit::path::{Between, SweptAngles};
+use crate::orbit::path::{FixedRadiiAngles, SweptAngles};
 use nodes::{Coarsest, LOOKED_AT, Nodes, SOLVED, coarsest};
 pub(crate) use open::{Band, EdgeOf, Listing, MOST_BANDS, MOST_EDGES, Open, Sifted};
 pub(crate) use patch::{Bent, Patch};
@@ -317,7 +317,7 @@ fn hand<'a, A: SweptAngles>(
     sight: &Sight,
     shown: &'a Shown,
     angles: &'a A,
-) -> Hand<'a, impl Between> {
+) -> Hand<'a, impl FixedRadiiAngles> {
     Hand {
         shown,
         angle_error: angles.error(),
@@ -327,7 +327,7 @@ fn hand<'a, A: SweptAngles>(
     }
 }
 
-impl<B: Between> Hand<'_, B> {
+impl<B: FixedRadiiAngles> Hand<'_, B> {
     /// The curves of order `number` on the coarsest nodes, right to `closeness`. The orders come one after the other.
     fn outline(&mut self, number: u32, closeness: Closeness) -> Drawn {
         let mut ends: Option<[Found; 2]> = None;

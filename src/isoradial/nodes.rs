@@ -19,8 +19,8 @@ use super::sight::Shown;
 use super::solve::{Closeness, Found, Guess, Target};
 use super::turns::Turns;
 use super::{EdgeError, Quarter};
-use crate::orbit::path::{Between, Branch};
-use crate::table::spline::{self, Axis, coefficients, on_half_cells};
+use crate::orbit::path::{Branch, FixedRadiiAngles};
+use crate::table::spline::{self, NodeAxis, coefficients, on_half_cells};
 
 /// Fewest cells of a piece: a quarter turn in eight.
 const FEWEST_CELLS: usize = 8;
@@ -66,7 +66,7 @@ pub(super) type Coarsest = [Found; FEWEST_CELLS + 1];
 ///
 /// The guesses: the next node lies where the cubic through the last two and their slopes goes on, or, from the second
 /// order on, where the one before it was, times as much as at the last node.
-pub(super) fn coarsest<B: Between>(
+pub(super) fn coarsest<B: FixedRadiiAngles>(
     target: &Target<B>,
     quarter: Quarter,
     turns: &mut Turns,
@@ -143,7 +143,7 @@ pub(super) fn coarsest<B: Between>(
 }
 
 /// A guess of node `i`: of what is kept, the cubic through the two nodes before and their slopes.
-fn extrapolated<B: Between>(
+fn extrapolated<B: FixedRadiiAngles>(
     target: &Target<B>,
     quarter: Quarter,
     i: usize,
@@ -184,7 +184,11 @@ fn extrapolated<B: Between>(
 
 impl Nodes {
     /// The nodes of `found`.
-    pub(super) fn new<B: Between>(target: &Target<B>, quarter: Quarter, found: &Coarsest) -> Self {
+    pub(super) fn new<B: FixedRadiiAngles>(
+        target: &Target<B>,
+        quarter: Quarter,
+        found: &Coarsest,
+    ) -> Self {
         let value = |(i, found): (usize, &Found)| {
             let x = quarter.x_at(i as f64 / FEWEST_CELLS as f64);
             if quarter.pole && x == 0.0 {
@@ -206,7 +210,7 @@ impl Nodes {
 
     /// The curve of `target`, its nodes doubled until it is right to `allowed` pixels in every cell that the picture
     /// shows, or as right as the angles are.
-    pub(super) fn refine<B: Between>(
+    pub(super) fn refine<B: FixedRadiiAngles>(
         self,
         target: &Target<B>,
         turns: &mut Turns,
@@ -281,8 +285,8 @@ impl Nodes {
         }
     }
 
-    pub(super) fn axis(&self) -> Axis {
-        Axis {
+    pub(super) fn axis(&self) -> NodeAxis {
+        NodeAxis {
             start: self.quarter.x.0,
             end: self.quarter.x.1,
             nodes: self.values.len() as u32,
@@ -355,7 +359,7 @@ impl Nodes {
     }
 
     /// Twice the cells, and how far the present curve was off on the new nodes, in pixels, if more than `floor`.
-    fn refined<B: Between>(
+    fn refined<B: FixedRadiiAngles>(
         &self,
         target: &Target<B>,
         turns: &mut Turns,

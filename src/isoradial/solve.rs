@@ -9,8 +9,8 @@
 
 use super::{Edge, Sight};
 use crate::orbit::Fate;
-use crate::orbit::invariants::{Orbit, Way};
-use crate::orbit::path::{Between, Branch, Crossings, SweptAngles, ahead, turns};
+use crate::orbit::invariants::{Orbit, RadialLeg};
+use crate::orbit::path::{Branch, Crossings, FixedRadiiAngles, SweptAngles, ahead, turns};
 
 /// From where, to which radius.
 #[derive(Debug, Clone)]
@@ -24,7 +24,7 @@ pub(super) struct Target<B> {
     /// Inverse radius to be met.
     u_disk: f64,
     /// There from `u0`.
-    way: Way,
+    way: RadialLeg,
     angles: B,
 }
 
@@ -64,7 +64,7 @@ pub(super) fn target<A: SweptAngles>(
     sight: &Sight,
     edge: Edge,
     angles: &A,
-) -> Target<impl Between> {
+) -> Target<impl FixedRadiiAngles> {
     let u_disk = match edge {
         Edge::Inner => sight.u_inner,
         Edge::Outer => sight.u_outer,
@@ -75,12 +75,12 @@ pub(super) fn target<A: SweptAngles>(
         critical: sight.critical(),
         critical_slope: sight.slope_scale * sight.critical(),
         u_disk,
-        way: Way::new(sight.u0, u_disk),
+        way: RadialLeg::new(sight.u0, u_disk),
         angles: angles.between(sight.u0, u_disk),
     }
 }
 
-impl<B: Between> Target<B> {
+impl<B: FixedRadiiAngles> Target<B> {
     /// A guess of h for the ray that meets the radius at `angle`: flat space's ray in the first half turn, where `u =
     /// u0 cos φ + w sin φ`, and the rings' decay towards the critical ray beyond.
     pub(super) fn first_guess(&self, angle: f64) -> f64 {

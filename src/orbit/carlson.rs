@@ -1,12 +1,12 @@
 //! Carlson's symmetric elliptic integral of the first kind.
 
-/// `R_F(x, y, z) = ½ ∫₀^∞ dt / √((t + x)(t + y)(t + z))`, symmetric and homogeneous of degree −½
+/// Computes `R_F(x, y, z) = ½ ∫₀^∞ dt / √((t + x)(t + y)(t + z))`, symmetric and homogeneous of degree −½
 /// (DLMF 19.16.1), for `x, y, z ≥ 0`, at most one of them zero.
 ///
-/// Duplication (DLMF 19.36.1–2, by 19.26.18) shrinks the arguments' deviations from their mean by four a step; once
-/// they are within 3 %, one more step leaves at most 0.0075, and the series in their elementary symmetric functions
-/// ends with terms of the seventh order: the eighth is under 1e-17. The relative error stays within a few units in
-/// the last place, since every step adds and multiplies positive numbers.
+/// Each duplication (DLMF 19.36.1–2, by 19.26.18) divides the arguments' deviations from their mean by four. Once these
+/// are within 3 %, one more step leaves at most 0.0075. The series in the deviations' elementary symmetric functions
+/// then ends with the seventh order, since the eighth is below 1e-17. The relative error is a few units in the last
+/// place, because every step adds and multiplies positive numbers.
 pub fn rf(x: f64, y: f64, z: f64) -> f64 {
     const CLOSE: f64 = 0.03;
     let (mut x, mut y, mut z) = (x, y, z);

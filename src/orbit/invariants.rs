@@ -1,11 +1,12 @@
-//! What stays constant along a ray: e², its distance from critical, and its family. The fate follows.
+//! The constants of motion of a ray: e², its difference from the critical value, and the family of rays.
 
-use super::{Fate, Ray};
+use super::events::Fate;
+use super::ray::Ray;
 
-/// The photon sphere's inverse radius, where the critical orbit winds for ever.
+/// The photon sphere's inverse radius, around which critical rays wind for ever.
 pub const PHOTON_SPHERE_U: f64 = 2.0 / 3.0;
 
-/// `e² = 1/b²` of the critical ray, b = 3√3/2 (design of the phase plane: its saddle is at (2/3, 0)).
+/// `e² = 1/b²` of the critical ray, b = 3√3/2: that of the phase plane's saddle, (u, du/dφ) = (2/3, 0).
 pub const CRITICAL_E2: f64 = 4.0 / 27.0;
 
 /// The three families of rays, by `e²` and the side of the photon sphere.
@@ -23,20 +24,20 @@ pub enum Family {
 #[derive(Debug, Clone, Copy)]
 pub struct Orbit {
     /// Where the ray starts.
-    pub start: Point,
+    pub start: OrbitPoint,
     /// Whether it starts towards the hole. A ray that starts at its turning point counts as having passed it.
     pub inward: bool,
     /// `e² = (du/dφ)² + u²(1 − u) = 1/b²`.
     pub e2: f64,
-    /// `Δ = e² − 4/27`, to a few units in the last place of itself wherever the start allows it.
+    /// `Δ = e² − 4/27`, to a few units in its own last place wherever the start's two numbers determine it as well.
     pub delta: f64,
-    /// Which way the ray goes.
+    /// The family of rays that it belongs to.
     pub family: Family,
 }
 
-/// A point of an orbit: where it is, and how steep.
+/// A point of an orbit.
 #[derive(Debug, Clone, Copy)]
-pub struct Point {
+pub struct OrbitPoint {
     /// Inverse radius.
     pub u: f64,
     /// `|du/dφ|`.
@@ -44,14 +45,14 @@ pub struct Point {
 }
 
 impl Orbit {
-    /// The constants of motion of `ray`.
+    /// Computes the constants of motion of `ray`.
     pub fn new(ray: Ray) -> Self {
         let (u, w) = (ray.u(), ray.dudphi());
         Self::with_delta(u, w, distance_from_critical(u, w.abs()))
     }
 
-    /// The orbit that starts at inverse radius `u` with slope `w`, whose `Δ = w² + u²(1 − u) − 4/27` is known better
-    /// than the two tell.
+    /// Returns the orbit that starts at inverse radius `u` with slope `w`, for a caller who knows its
+    /// `Δ = w² + u²(1 − u) − 4/27` better than the two numbers determine it.
     #[inline(always)]
     pub(crate) fn with_delta(u: f64, w: f64, delta: f64) -> Self {
         let slope = w.abs();
@@ -63,7 +64,7 @@ impl Orbit {
             Family::Trapped
         };
         Self {
-            start: Point { u, slope },
+            start: OrbitPoint { u, slope },
             inward: w > 0.0 || (slope == 0.0 && family == Family::Trapped),
             e2: slope * slope + u * u * (1.0 - u),
             delta,
@@ -71,7 +72,7 @@ impl Orbit {
         }
     }
 
-    /// How the ray ends.
+    /// Returns how the ray ends.
     #[inline]
     pub fn fate(&self) -> Fate {
         match self.family {
@@ -81,45 +82,45 @@ impl Orbit {
         }
     }
 
-    /// The orbit's point at inverse radius `u`, if the orbit reaches it (before or after its turning point; a radius
-    /// that it only touches is not reached).
+    /// Returns the orbit's point at inverse radius `u`, if the orbit reaches it before or after its turning point. A
+    /// radius that the orbit only touches is not reached.
     #[inline]
-    pub fn point_at(&self, u: f64) -> Option<Point> {
-        Way::new(self.start.u, u).end(self)
+    pub fn point_at(&self, u: f64) -> Option<OrbitPoint> {
+        RadialLeg::new(self.start.u, u).end(self)
     }
 
-    /// The orbit's end: r = ∞ or the horizon. There `|du/dφ| = e`.
-    pub fn end(&self) -> Point {
+    /// Returns the orbit's end, r = ∞ or the horizon. There `|du/dφ| = e`.
+    pub fn end(&self) -> OrbitPoint {
         let u = match self.fate() {
             Fate::Capture => 1.0,
             Fate::Escape => 0.0,
         };
-        Point {
+        OrbitPoint {
             u,
             slope: self.e2.sqrt(),
         }
     }
 }
 
-/// From one inverse radius to another: what orbits between them have in common.
+/// What orbits between two inverse radii have in common.
 ///
-/// `u̇² = u̇0² + (u0 − u)(u0 + u − u0² − u0 u − u²)`: the start's slope and a difference that is exact for
-/// neighbouring radii. About the photon sphere the second factor vanishes too; with `x = u − 2/3` it is
+/// `u̇² = u̇0² + (u0 − u)(u0 + u − u0² − u0 u − u²)`: a sum of the start's slope and a difference that is exact for
+/// neighbouring radii. About the photon sphere the second factor vanishes too. With `x = u − 2/3` it is
 /// `−(x0 + x + x0² + x0 x + x²)`, which keeps its digits there.
 #[derive(Debug, Clone, Copy)]
-pub struct Way {
-    /// Where it ends.
+pub struct RadialLeg {
+    /// The second inverse radius.
     u: f64,
-    /// Whether that is inside the photon sphere.
+    /// Whether it is inside the photon sphere.
     inside: bool,
-    /// What is added to `u̇²` on the way.
+    /// The change of `u̇²` between the two.
     gain: f64,
-    /// `u̇²` of the critical ray at its end.
+    /// `u̇²` of the critical ray at the second.
     critical: f64,
 }
 
-impl Way {
-    /// From inverse radius `u0` to `u`.
+impl RadialLeg {
+    /// Prepares the leg from inverse radius `u0` to `u`.
     #[inline]
     pub fn new(u0: f64, u: f64) -> Self {
         let factor = if u0 + u > 1.0 {
@@ -137,13 +138,13 @@ impl Way {
         }
     }
 
-    /// Where `orbit`, which starts where the way does, is at the way's end, if it gets there: see
-    /// [`Orbit::point_at`].
+    /// Returns the point at the second inverse radius of `orbit`, which must start at the first; `None` where it does
+    /// not reach the second (see [`Orbit::point_at`]).
     #[inline(always)]
-    pub fn end(&self, orbit: &Orbit) -> Option<Point> {
+    pub fn end(&self, orbit: &Orbit) -> Option<OrbitPoint> {
         let slope2 = orbit.start.slope * orbit.start.slope;
-        // Where u̇² is small against the start's, which is nearer to the photon sphere, a difference from the start's
-        // keeps few digits, and s² + Δ all of them.
+        // Where u̇² is small against the start's (nearer to the photon sphere) the difference from the start's has few
+        // digits left, and s² + Δ has all of them.
         let squared = if self.critical + orbit.delta.abs() < slope2 {
             self.critical + orbit.delta
         } else {
@@ -154,38 +155,38 @@ impl Way {
             Family::Scattered => !self.inside,
             Family::Trapped => self.inside,
         };
-        (same_side && squared > 0.0).then(|| Point {
+        (same_side && squared > 0.0).then(|| OrbitPoint {
             u: self.u,
             slope: squared.sqrt(),
         })
     }
 }
 
-/// `3u − 2`, for u ≥ ½ rounded once: there both summands of `(2u − 1) + (u − 1)` are exact. (Below, where nothing
-/// cancels, they are rounded to half an ε each.) Never zero, since 2/3 is no floating-point number.
+/// Returns `3u − 2`. For u ≥ ½ it is rounded once, since both summands of `(2u − 1) + (u − 1)` are exact; below,
+/// nothing cancels. It is never zero, since 2/3 is not a floating-point number.
 #[inline]
 pub(crate) fn three_u_minus_two(u: f64) -> f64 {
     (2.0 * u - 1.0) + (u - 1.0)
 }
 
-/// `s = |u − 2/3| √(u + 1/3)`: the slope `|du/dφ|` of the critical ray at u, since `s² = 4/27 − u²(1 − u)`.
+/// Returns `s = |u − 2/3| √(u + 1/3)`, the slope `|du/dφ|` of the critical ray at u, since `s² = 4/27 − u²(1 − u)`.
 pub(crate) fn critical_slope(u: f64) -> f64 {
     three_u_minus_two(u).abs() * ((3.0 * u + 1.0) / 27.0).sqrt()
 }
 
-/// `Δ = e² − 4/27 = (|u̇| − s)(|u̇| + s)`.
+/// Computes `Δ = e² − 4/27 = (|u̇| − s)(|u̇| + s)`.
 ///
-/// Within some units in the last place of critical the first factor has no digit left; there Δ is
-/// `(27u̇² − (3u − 2)²(3u + 1))/27` in double-double, whose relative error of 2⁻¹⁰⁰ (against 27u̇²) leaves the sign,
-/// hence the fate, right.
+/// A few units in the last place from critical the first factor has no digit left. There Δ is computed as `(27u̇² − (3u
+/// − 2)²(3u + 1))/27` in double-double arithmetic. Its error of 2⁻¹⁰⁰ times 27u̇² leaves the sign, and with it the
+/// ray's fate, right.
 fn distance_from_critical(u: f64, slope: f64) -> f64 {
     let s = critical_slope(u);
     let difference = slope - s;
     if slope.is_infinite() {
         return f64::INFINITY;
     }
-    // s carries at most 3 roundings: of a thousandth of it they are 1e3 as much, and angles, which go as ln |Δ|, are
-    // right to some 1e-13 whatever their condition.
+    // s has at most 3 roundings. Relative to a thousandth of s they are 1e3 times as large, and angles, which grow as
+    // ln |Δ|, are right to some 1e-13 whatever their condition.
     if difference.abs() > 1e-3 * s {
         return difference * (slope + s);
     }
@@ -214,7 +215,7 @@ struct Double {
 }
 
 impl Double {
-    /// a + b exactly (Knuth 1969).
+    /// Returns a + b exactly (Knuth 1969).
     fn sum(a: f64, b: f64) -> Self {
         let high = a + b;
         let part = high - a;
@@ -224,7 +225,7 @@ impl Double {
         }
     }
 
-    /// a·b exactly (Dekker 1971): by splitting, so that no fused multiply-add is needed.
+    /// Returns a·b exactly (Dekker 1971), by splitting, without a fused multiply-add.
     fn product(a: f64, b: f64) -> Self {
         let high = a * b;
         let ((ah, al), (bh, bl)) = (split(a), split(b));
@@ -247,14 +248,14 @@ impl Double {
         )
     }
 
-    /// The difference, as one double.
+    /// Returns the difference, rounded to one double.
     fn sub(self, other: Self) -> f64 {
         let d = Self::sum(self.high, -other.high);
         d.high + (d.low + (self.low - other.low))
     }
 }
 
-/// The upper 26 bits of a, and the rest (Veltkamp 1968).
+/// Splits a into its upper 26 bits and the rest (Veltkamp 1968).
 fn split(a: f64) -> (f64, f64) {
     let c = 134_217_729.0 * a;
     let high = c - (c - a);

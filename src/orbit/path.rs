@@ -1,24 +1,24 @@
-//! A ray's events, put together from swept angles. Written once for every method that knows those.
+//! Puts a ray's events together from swept angles, for every method that computes those.
 
-use super::exact::turning_u;
-use super::invariants::{Family, Orbit, Point};
-use super::{
-    Event, EventKind, OrbitError, Orbits, Ray, TurningPoint, WatchedRadius, inverse_radii,
-};
+use super::elliptic::turning_u;
+use super::events::{Event, EventKind, Orbits, TurningPoint, WatchedRadius};
+use super::invariants::{Family, Orbit, OrbitPoint};
+use super::ray::{OrbitError, Ray};
 
-/// A method that knows the angle a ray sweeps between two points of its orbit.
+/// A method that computes the angle a ray sweeps between two points of its orbit. Every such method implements
+/// [`Orbits`].
 pub trait SweptAngles: Sync {
-    /// The angle swept from `from` to `to` on a stretch without a turning point, `∫ du/|du/dφ|` between them; ≥ 0.
-    fn direct(&self, orbit: &Orbit, from: Point, to: Point) -> f64;
+    /// Returns the angle swept from `from` to `to` on a stretch without a turning point, `∫ du/|du/dφ|` ≥ 0.
+    fn direct(&self, orbit: &Orbit, from: OrbitPoint, to: OrbitPoint) -> f64;
 
-    /// The angle swept from `from` over the orbit's turning point (periapsis or apoapsis) to `to`. Only for orbits
-    /// that have one.
-    fn around(&self, orbit: &Orbit, from: Point, to: Point) -> f64;
+    /// Returns the angle swept from `from` over the orbit's turning point (periapsis or apoapsis) to `to`. Only for
+    /// orbits that have a turning point.
+    fn around(&self, orbit: &Orbit, from: OrbitPoint, to: OrbitPoint) -> f64;
 
-    /// The largest error of an angle, in radians, beside what rounding the ray's own two numbers does to it.
+    /// Returns the largest error of an angle, in radians, without the effect of rounding the ray's two numbers.
     fn error(&self) -> f64;
 
-    /// The angle from the start of `orbit` to its end.
+    /// Returns the angle from the start of `orbit` to its end.
     fn to_end(&self, orbit: &Orbit) -> f64 {
         if turns(orbit) {
             self.around(orbit, orbit.start, orbit.end())
@@ -27,19 +27,19 @@ pub trait SweptAngles: Sync {
         }
     }
 
-    /// The angles at which the orbit crosses inverse radius `u`: inbound, outbound. The start is no crossing.
+    /// Returns the angles at which the orbit crosses inverse radius `u`. The start is not a crossing.
     fn crossings(&self, orbit: &Orbit, u: f64) -> Crossings {
-        Anywhere(self).crossings(orbit, orbit.point_at(u))
+        PlainAngles(self).crossings(orbit, orbit.point_at(u))
     }
 
-    /// The same angles, for one orbit after the other, of orbits that start at inverse radius `from`, to `to`: where
-    /// a method knows what depends on the two alone, it is found once.
-    fn between(&self, from: f64, to: f64) -> impl Between {
+    /// Returns the angles of orbits that all start at inverse radius `from`, to inverse radius `to`. A method may
+    /// compute here what depends on the two radii alone.
+    fn between(&self, from: f64, to: f64) -> impl FixedRadiiAngles {
         let _ = (from, to);
-        Anywhere(self)
+        PlainAngles(self)
     }
 
-    /// The first of [`Self::crossings`].
+    /// Returns the first of [`Self::crossings`].
     #[inline]
     fn first_crossing_at(&self, orbit: &Orbit, u: f64) -> Option<f64> {
         let point = orbit.point_at(u)?;
@@ -51,21 +51,22 @@ pub trait SweptAngles: Sync {
     }
 }
 
-/// A method's swept angles from the start of orbits, which is at one radius, to their points at another.
-pub trait Between {
-    /// [`SweptAngles::direct`] from the start.
-    fn direct(&self, orbit: &Orbit, to: Point) -> f64;
+/// A method's swept angles from the start of orbits at one fixed radius to their points at another.
+pub trait FixedRadiiAngles {
+    /// Returns [`SweptAngles::direct`] from the start.
+    fn direct(&self, orbit: &Orbit, to: OrbitPoint) -> f64;
 
-    /// [`SweptAngles::around`] from the start.
-    fn around(&self, orbit: &Orbit, to: Point) -> f64;
+    /// Returns [`SweptAngles::around`] from the start.
+    fn around(&self, orbit: &Orbit, to: OrbitPoint) -> f64;
 
-    /// The angles at which the orbit is at a point of its own, if it has it, inbound and outbound.
-    fn crossings(&self, orbit: &Orbit, point: Option<Point>) -> Crossings {
+    /// Returns the angles at which the orbit is at `point`, which is the orbit's point at the second radius; none
+    /// where the orbit does not reach that radius.
+    fn crossings(&self, orbit: &Orbit, point: Option<OrbitPoint>) -> Crossings {
         let Some(point) = point else {
             return Crossings::default();
         };
         let first = ahead(orbit, point.u).then(|| self.direct(orbit, point));
-        // What lies on the way to the turning point is crossed again after it, and so is all that lies behind the
+        // After its turning point the orbit crosses every radius that lay on the way there, and every one behind the
         // start.
         let second = turns(orbit).then(|| self.around(orbit, point));
         if orbit.inward {
@@ -82,32 +83,32 @@ pub trait Between {
     }
 }
 
-/// Between any two radii, of a method that knows nothing of them beforehand.
-struct Anywhere<'a, A: ?Sized>(&'a A);
+/// The angles of a method that computes nothing beforehand.
+struct PlainAngles<'a, A: ?Sized>(&'a A);
 
-impl<A: SweptAngles + ?Sized> Between for Anywhere<'_, A> {
+impl<A: SweptAngles + ?Sized> FixedRadiiAngles for PlainAngles<'_, A> {
     #[inline]
-    fn direct(&self, orbit: &Orbit, to: Point) -> f64 {
+    fn direct(&self, orbit: &Orbit, to: OrbitPoint) -> f64 {
         self.0.direct(orbit, orbit.start, to)
     }
 
     #[inline]
-    fn around(&self, orbit: &Orbit, to: Point) -> f64 {
+    fn around(&self, orbit: &Orbit, to: OrbitPoint) -> f64 {
         self.0.around(orbit, orbit.start, to)
     }
 }
 
-/// The two ways from an orbit's start to a radius.
+/// Which of an orbit's two stretches from its start to a radius is meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Branch {
-    /// Straight there.
+    /// Before the turning point.
     Direct,
     /// Over the turning point.
     Around,
 }
 
 impl Branch {
-    /// The other one.
+    /// Returns the other one.
     pub(crate) fn other(self) -> Self {
         match self {
             Self::Direct => Self::Around,
@@ -116,7 +117,7 @@ impl Branch {
     }
 }
 
-/// Whether the orbit leaves its start towards inverse radius `u`.
+/// Returns whether the orbit leaves its start towards inverse radius `u`.
 pub(crate) fn ahead(orbit: &Orbit, u: f64) -> bool {
     if orbit.inward {
         u > orbit.start.u
@@ -125,7 +126,7 @@ pub(crate) fn ahead(orbit: &Orbit, u: f64) -> bool {
     }
 }
 
-/// Whether the orbit's turning point is still ahead of its start.
+/// Returns whether the orbit's turning point is ahead of its start.
 pub(crate) fn turns(orbit: &Orbit) -> bool {
     match orbit.family {
         Family::Monotone => false,
@@ -145,7 +146,7 @@ pub struct Crossings {
 
 impl<T: SweptAngles> Orbits for T {
     fn follow(&self, ray: Ray, radii: &[f64]) -> Result<Vec<Event>, OrbitError> {
-        let watched = inverse_radii(radii)?;
+        let watched = WatchedRadius::sorted(radii)?;
         let orbit = Orbit::new(ray);
         let mut inbound = Vec::with_capacity(watched.len());
         let mut outbound = Vec::with_capacity(watched.len());
@@ -161,8 +162,8 @@ impl<T: SweptAngles> Orbits for T {
             inbound.extend(crossings.inbound.map(event(EventKind::Inbound)));
             outbound.extend(crossings.outbound.map(event(EventKind::Outbound)));
         }
-        // Watched radii come in ascending u: the order of inbound crossings, the reverse of outbound ones. A trapped
-        // ray goes out first and in afterwards, every other ray in first.
+        // Watched radii come in ascending u: in the order of inbound crossings, in the reverse order of outbound ones.
+        // A trapped ray goes out first, every other ray in first.
         outbound.reverse();
         let (mut events, rest) = match orbit.family {
             Family::Trapped => (outbound, inbound),
@@ -179,7 +180,7 @@ impl<T: SweptAngles> Orbits for T {
 
     fn turning_point(&self, ray: Ray) -> Result<Option<TurningPoint>, OrbitError> {
         let orbit = Orbit::new(ray);
-        // There and back to the start is twice the way there, and needs no point where du/dφ is 0 but for rounding.
+        // Half of the angle there and back: no point is needed whose du/dφ is 0 only up to rounding.
         Ok(turns(&orbit).then(|| TurningPoint {
             u: turning_u(&orbit),
             angle: 0.5 * self.around(&orbit, orbit.start, orbit.start),

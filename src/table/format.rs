@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!        0  ┌──────────────────────────────────────────────┐
-//!           │ magic  89 44 52 4B 0D 0A 1A 0A               │  "\x89DRK\r\n\x1A\n": a transfer that changes line ends or
-//!        8  ├──────────────────────────────────────────────┤  clears the eighth bit shows, as in PNG
+//!           │ magic  89 44 52 4B 0D 0A 1A 0A               │  "\x89DRK\r\n\x1A\n": as in PNG, a transfer that changes
+//!        8  ├──────────────────────────────────────────────┤  line ends or clears the eighth bit is detected
 //!           │ format version                           u32 │
 //!       12  ├──────────────────────────────────────────────┤
 //!           │ metadata length, bytes                   u32 │
@@ -20,13 +20,13 @@
 //!           ├──────────────────────────────────────────────┤
 //!           │ zeros up to a multiple of 64                 │
 //!    64 · k ├──────────────────────────────────────────────┤
-//!           │ numbers: f64, every one finite               │  spline coefficients: A, then the charts critical, weak, trapped,
-//!           │                                              │  radial, each row by row, a row for each node of its orbit axis
-//!           └──────────────────────────────────────────────┘  (and one more at either end)
+//!           │ numbers: f64, every one finite               │  spline coefficients: A, then the charts critical, weak,
+//!           │                                              │  trapped, radial, each row by row: one row for each node
+//!           └──────────────────────────────────────────────┘  of its orbit axis, and one more at either end
 //! ```
 //!
-//! Every byte is covered by a checksum, a comparison or the check for zero. The bytes depend on the specification and
-//! on the format's version alone.
+//! Every byte is covered by a checksum, by a comparison, or by the check for zero. The bytes depend on nothing but the
+//! specification and the format's version.
 
 use serde::{Deserialize, Serialize};
 
@@ -35,7 +35,7 @@ use super::spec::Spec;
 /// The first eight bytes of every table.
 pub const MAGIC: [u8; 8] = *b"\x89DRK\r\n\x1A\n";
 
-/// The version of the format: of this layout and of the functions stored. It changes with either.
+/// The version of the format. It changes with this layout and with the functions stored.
 pub const VERSION: u32 = 1;
 
 const VERSION_AT: usize = 8;
@@ -47,47 +47,48 @@ const PREAMBLE_CRC_AT: usize = 32;
 const METADATA_AT: usize = 36;
 const ALIGNMENT: usize = 64;
 
-/// Far above what [`Metadata`] needs (about 200 bytes); a damaged length cannot make the decoder allocate more.
+/// The greatest length of the metadata in bytes: far more than it needs (about 200), and a bound on what a damaged
+/// length can make the decoder allocate.
 const METADATA_LIMIT: usize = 4096;
 
-/// All that comes before the numbers of any table.
-pub(crate) const LONGEST_HEAD: usize = (METADATA_AT + METADATA_LIMIT).next_multiple_of(ALIGNMENT);
+/// The greatest length of what comes before the numbers, in bytes.
+pub(super) const LONGEST_HEAD: usize = (METADATA_AT + METADATA_LIMIT).next_multiple_of(ALIGNMENT);
 
-/// What the numbers of a table mean, in words; compared on opening.
+/// What the numbers of a table mean, in words. A table that says something else is refused.
 pub const CONVENTIONS: &str = "d2u/dphi2 = 3/2 u^2 - u; u = 1/r, Schwarzschild radius 1, radians; cubic B-splines of A, B, V, Z, H";
 
-/// What a table says of itself.
+/// A table's description of itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Metadata {
     /// [`CONVENTIONS`].
     pub conventions: String,
-    /// The grid.
+    /// The specification that the table was made from.
     pub spec: Spec,
-    /// The largest error of a swept angle against the exact method, in radians, on points off the grid, measured when
-    /// the table was made.
+    /// The largest error of a swept angle against the exact method, in radians, off the grid's nodes. Measured when the
+    /// table was made.
     pub measured_error: f64,
-    /// How many swept angles were compared for it.
+    /// How many swept angles were compared to measure it.
     pub measured_angles: u64,
 }
 
-/// Why bytes are no usable table.
+/// Why bytes are not a table that can be used.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum FormatError {
-    /// Some other file.
+    /// The bytes are something else.
     #[error("it is not a darkness table: it does not begin with a table's first eight bytes")]
     Foreign,
-    /// No regular file: nothing that has a length and stays what it is.
+    /// The path leads to something that is not a regular file.
     #[error("it is not a darkness table: a table is a regular file, and this is a {kind}")]
     NoFile {
         /// What it is.
         kind: &'static str,
     },
-    /// A table whose bytes were swapped in twos, fours or eights.
+    /// The bytes of a table were swapped in twos, fours or eights.
     #[error(
-        "it is a table with its bytes in another order, and this version of darkness reads format {VERSION}, little-endian as it was written: copy it byte by byte"
+        "its bytes are in another order, and this version of darkness reads format {VERSION}, which is little-endian: copy the table byte by byte"
     )]
     Swapped,
-    /// A table of another version of the program.
+    /// The table was made by another version of the program.
     #[error("it is a table of format {found}, and this version of darkness reads format {VERSION}")]
     Outdated {
         /// The file's version.
@@ -95,59 +96,61 @@ pub enum FormatError {
     },
     /// The file ends early, or goes on too long.
     #[error(
-        "it is {actual} bytes long and should be {expected}: a copy that did not finish, or bytes added"
+        "it is {actual} bytes long and should be {expected}: a copy did not finish, or bytes were added"
     )]
     Length {
-        /// Bytes there should be.
+        /// The length that its first bytes give.
         expected: u64,
-        /// Bytes there are.
+        /// Its length.
         actual: u64,
     },
     /// The file changed while it was read.
-    #[error("it is being written or cut by another process")]
+    #[error("another process is writing or cutting it")]
     Changed,
-    /// Some bytes are not what was written.
+    /// A check failed.
     #[error("it is damaged: {what}")]
     Damaged {
         /// Which check failed.
         what: &'static str,
     },
-    /// The bytes are whole, and begin where numbers cannot be read in place.
-    #[error(
-        "its bytes do not begin at a multiple of 8 in memory; map the file or read it into an aligned buffer"
-    )]
-    Misaligned,
 }
 
 fn damaged(what: &'static str) -> FormatError {
     FormatError::Damaged { what }
 }
 
-/// Where the parts of a valid table lie.
+/// What a table holds before its numbers, checked.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Layout {
-    pub(crate) metadata: Metadata,
-    /// Offset of the first number; they go on to the end.
-    pub(crate) numbers_at: usize,
+pub(super) struct Head {
+    pub(super) metadata: Metadata,
+    /// Offset of the first number in bytes. The numbers go on to the end.
+    pub(super) numbers_at: usize,
+    numbers_crc: u32,
 }
 
-/// The bytes of a table up to its numbers.
-pub(crate) fn header(metadata: &Metadata, numbers: &[u8]) -> Option<Vec<u8>> {
-    let encoded = bincode::serde::encode_to_vec(metadata, bincode::config::standard()).ok()?;
+/// Encodes the bytes of a table up to its numbers; `None` where the metadata is too long.
+pub(super) fn header(metadata: Metadata, numbers: &[u8]) -> Option<(Vec<u8>, Head)> {
+    let encoded = bincode::serde::encode_to_vec(&metadata, bincode::config::standard()).ok()?;
     if encoded.len() > METADATA_LIMIT {
         return None;
     }
+    let numbers_crc = crc32fast::hash(numbers);
     let mut bytes = Vec::with_capacity(METADATA_AT + encoded.len() + ALIGNMENT);
     bytes.extend(MAGIC);
     bytes.extend(VERSION.to_le_bytes());
     bytes.extend((encoded.len() as u32).to_le_bytes());
     bytes.extend(crc32fast::hash(&encoded).to_le_bytes());
-    bytes.extend(crc32fast::hash(numbers).to_le_bytes());
+    bytes.extend(numbers_crc.to_le_bytes());
     bytes.extend((numbers.len() as u64).to_le_bytes());
     bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
     bytes.extend(encoded);
     bytes.resize(bytes.len().next_multiple_of(ALIGNMENT), 0);
-    Some(bytes)
+    let head = Head {
+        metadata,
+        numbers_at: bytes.len(),
+        numbers_crc,
+    };
+    Some((bytes, head))
 }
 
 fn u32_at(bytes: &[u8], at: usize) -> u32 {
@@ -158,8 +161,8 @@ fn u64_at(bytes: &[u8], at: usize) -> u64 {
     u64::from_le_bytes(core::array::from_fn(|k| bytes[at + k]))
 }
 
-/// Where the metadata of a file of `actual` bytes ends, and where its numbers begin: by its preamble.
-fn layout(start: &[u8], actual: u64) -> Result<(usize, usize), FormatError> {
+/// Checks the preamble of a file of `actual` bytes. Returns where its metadata ends and where its numbers begin.
+fn preamble(start: &[u8], actual: u64) -> Result<(usize, usize), FormatError> {
     let seen = start.len().min(MAGIC.len());
     if start[..seen] != MAGIC[..seen] || start.is_empty() {
         let swapped = |width: usize| {
@@ -180,8 +183,7 @@ fn layout(start: &[u8], actual: u64) -> Result<(usize, usize), FormatError> {
     }
     let found = u32_at(start, VERSION_AT);
     if crc32fast::hash(&start[..PREAMBLE_CRC_AT]) != u32_at(start, PREAMBLE_CRC_AT) {
-        // Another version may lay out its preamble in another way: a foreign version explains the mismatch as well as
-        // damage does.
+        // Another version may lay out its preamble in another way, which explains the mismatch as well as damage does.
         return Err(if found == VERSION {
             damaged("the checksum of its preamble does not match")
         } else {
@@ -206,12 +208,13 @@ fn layout(start: &[u8], actual: u64) -> Result<(usize, usize), FormatError> {
     Ok((metadata_end, numbers_at))
 }
 
-/// Checks all of a file of `actual` bytes that comes before its numbers, which is in its first [`LONGEST_HEAD`] bytes.
+/// Checks everything that comes before the numbers in a file of `actual` bytes. `start` is the file, or its first
+/// [`LONGEST_HEAD`] bytes.
 ///
 /// # Errors
-/// [`FormatError`]: what is wrong.
-pub(crate) fn head(start: &[u8], actual: u64) -> Result<Layout, FormatError> {
-    let (metadata_end, numbers_at) = layout(start, actual)?;
+/// [`FormatError`]: the first check that fails.
+pub(super) fn head(start: &[u8], actual: u64) -> Result<Head, FormatError> {
+    let (metadata_end, numbers_at) = preamble(start, actual)?;
     let metadata_length = metadata_end - METADATA_AT;
     let numbers_length = actual - numbers_at as u64;
     let (Some(encoded), Some(padding)) = (
@@ -233,10 +236,14 @@ pub(crate) fn head(start: &[u8], actual: u64) -> Result<Layout, FormatError> {
         return Err(damaged("its numbers follow other conventions"));
     }
     if !(0.0..f64::INFINITY).contains(&metadata.measured_error) {
-        return Err(damaged("its measured error is no error"));
+        return Err(damaged(
+            "its measured error is not a finite number from 0 on",
+        ));
     }
     if !metadata.spec.is_sound() {
-        return Err(damaged("its grid has sizes that no table has"));
+        return Err(damaged(
+            "its specification is not one that a table can have",
+        ));
     }
     if metadata
         .spec
@@ -250,28 +257,31 @@ pub(crate) fn head(start: &[u8], actual: u64) -> Result<Layout, FormatError> {
     if padding.iter().any(|&b| b != 0) {
         return Err(damaged("the padding before its numbers is not zero"));
     }
-    Ok(Layout {
+    Ok(Head {
         metadata,
         numbers_at,
+        numbers_crc: u32_at(start, NUMBERS_CRC_AT),
     })
 }
 
-/// Checks every byte of a table.
-pub(crate) fn parse(bytes: &[u8]) -> Result<Layout, FormatError> {
-    let start = &bytes[..bytes.len().min(LONGEST_HEAD)];
-    let layout = head(start, bytes.len() as u64)?;
-    let numbers_at = layout.numbers_at;
-    if crc32fast::hash(&bytes[numbers_at..]) != u32_at(bytes, NUMBERS_CRC_AT) {
-        return Err(damaged("the checksum of its numbers does not match"));
+impl Head {
+    /// Checks the numbers of a table whose file is `bytes`, aligned to 8.
+    ///
+    /// # Errors
+    /// [`FormatError::Damaged`]
+    pub(super) fn check_numbers(&self, bytes: &[u8]) -> Result<(), FormatError> {
+        if crc32fast::hash(&bytes[self.numbers_at..]) != self.numbers_crc {
+            return Err(damaged("the checksum of its numbers does not match"));
+        }
+        let mut numbers = numbers(bytes, self.numbers_at).iter();
+        if !numbers.all(|number| number.is_finite()) {
+            return Err(damaged("one of its numbers is not finite"));
+        }
+        Ok(())
     }
-    let numbers = numbers(bytes, numbers_at)?;
-    if !numbers.iter().all(|x| x.is_finite()) {
-        return Err(damaged("one of its numbers is not finite"));
-    }
-    Ok(layout)
 }
 
-/// The numbers, read in place.
-pub(crate) fn numbers(bytes: &[u8], numbers_at: usize) -> Result<&[f64], FormatError> {
-    bytemuck::try_cast_slice(&bytes[numbers_at..]).map_err(|_| FormatError::Misaligned)
+/// Returns the numbers, read in place. `bytes` must be aligned to 8, as maps and [`Vec<u64>`] are.
+pub(super) fn numbers(bytes: &[u8], numbers_at: usize) -> &[f64] {
+    bytemuck::cast_slice(&bytes[numbers_at..])
 }

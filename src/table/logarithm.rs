@@ -1,15 +1,12 @@
 //! The logarithm of a ratio, at the cost of one division.
 
-/// `ln(a/b)` for positive, normal a and b: `k ln 2 + 2 artanh(σ)`, `σ = (a − 2ᵏb)/(a + 2ᵏb)`, with the k that brings
-/// `a/(2ᵏb)` between √½ and √2, so that `|σ| ≤ 0.1716` (DLMF 4.6.4, 4.37.24). Error below 2 ε of the larger of 1 and
-/// the result.
-///
-/// b = 0 counts as the smallest normal number.
+/// Returns `ln(a/b)` for positive, normal a and b: `k ln 2 + 2 artanh(σ)`, `σ = (a − 2ᵏb)/(a + 2ᵏb)`, with the k that
+/// brings `a/(2ᵏb)` between √½ and √2, so that `|σ| ≤ 0.1716` (DLMF 4.6.4, 4.37.24). The error is below 2 ε times the
+/// larger of 1 and the result. For b = 0 the result is that of the smallest normal number.
 #[inline(always)]
 pub(crate) fn ln_ratio(a: f64, b: f64) -> f64 {
-    // artanh σ / σ = 1 + z(1/3 + z/5 + z²/7 + …), z = σ² ≤ 0.02944: the bracket's best polynomial of degree 6 there,
-    // off by
-    // 1.6e-16, times z below 5e-18.
+    // artanh σ / σ = 1 + z (1/3 + z/5 + z²/7 + …), z = σ² ≤ 0.02944. These are the coefficients of the best polynomial
+    // of degree 6 for the bracket. Its error is 1.6e-16, which times z is below 5e-18.
     const C: [f64; 7] = [
         0.333_333_333_333_333_5,
         0.199_999_999_999_497_22,
@@ -25,7 +22,7 @@ pub(crate) fn ln_ratio(a: f64, b: f64) -> f64 {
     let m_a = f64::from_bits(bits_a & MANTISSA | ONE);
     let m_b = f64::from_bits(bits_b & MANTISSA | ONE);
     let k = (bits_a >> 52) as i32 - (bits_b >> 52) as i32;
-    // Both mantissas are in [1, 2): one doubling of the smaller at most.
+    // Both mantissas are in [1, 2), so that at most one doubling of the smaller is needed.
     let (too_large, too_small) = (
         m_a > core::f64::consts::SQRT_2 * m_b,
         m_b > core::f64::consts::SQRT_2 * m_a,
@@ -54,7 +51,7 @@ mod tests {
             for b in [1e-33, 0.3, 1.0, 1.41, 1.999_999, 2.0, 77.7] {
                 let truth = libm::log(a) - libm::log(b);
                 let got = ln_ratio(a, b);
-                // What is left: libm's two roundings, ours, and those of the difference.
+                // The roundings of the two logarithms of libm, of this one, and of the difference.
                 let allowed = 4.0
                     * f64::EPSILON
                     * truth
@@ -71,7 +68,7 @@ mod tests {
         }
     }
 
-    /// Near one the result keeps its own digits: the difference is exact.
+    /// Near one the difference of the arguments is exact, so that the result keeps its digits.
     #[test]
     fn small_logarithms() {
         for k in 1..50 {

@@ -14,34 +14,34 @@ use crate::lanes::{Real, rounded};
 
 /// A uniform axis whose ends lie exactly on its first and its last node.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Axis {
+pub(crate) struct NodeAxis {
     /// The first node.
     pub(crate) start: f64,
     /// The last node.
     pub(crate) end: f64,
-    /// How many nodes; at least [`Axis::FEWEST`].
+    /// How many nodes; at least [`NodeAxis::FEWEST`].
     pub(crate) nodes: u32,
 }
 
 /// Four neighbouring coefficients and their weights.
 #[derive(Debug, Clone, Copy)]
-pub struct Stencil {
+pub(crate) struct Stencil {
     first: usize,
     weights: [f64; 4],
 }
 
 /// The stencils of two places on one axis, their weights side by side.
 #[derive(Debug, Clone, Copy)]
-pub struct StencilPair {
+pub(crate) struct StencilPair {
     first: [usize; 2],
     weights: [f64x2; 4],
 }
 
-impl Axis {
-    /// The end conditions take the outermost six nodes.
+impl NodeAxis {
+    /// The fewest nodes of an axis: the end conditions use the outermost six.
     pub(crate) const FEWEST: u32 = 6;
 
-    /// The node `i`, the ends exactly.
+    /// Returns node `i`; the first and the last are exactly the ends.
     pub(crate) fn node(self, i: u32) -> f64 {
         if i + 1 == self.nodes {
             return self.end;
@@ -49,12 +49,12 @@ impl Axis {
         self.start + (self.end - self.start) * (f64::from(i) / f64::from(self.nodes - 1))
     }
 
-    /// How many coefficients the axis has.
+    /// Returns how many coefficients the axis has.
     pub(crate) fn coefficients(self) -> usize {
         self.nodes as usize + 2
     }
 
-    /// Nodes a unit of the axis.
+    /// Returns the number of cells in a unit of the axis.
     pub(crate) fn scale(self) -> f64 {
         f64::from(self.nodes - 1) / (self.end - self.start)
     }
@@ -62,14 +62,14 @@ impl Axis {
 
 /// An axis ready for lookups.
 #[derive(Debug, Clone, Copy)]
-pub struct Scale {
+pub(crate) struct Scale {
     start: f64,
     per_unit: f64,
     last_cell: i32,
 }
 
 impl Scale {
-    pub(crate) fn new(axis: Axis) -> Self {
+    pub(crate) fn new(axis: NodeAxis) -> Self {
         Self {
             start: axis.start,
             per_unit: axis.scale(),
@@ -77,8 +77,8 @@ impl Scale {
         }
     }
 
-    /// The coefficients about `x` and the uniform cubic B-spline's weights. Beyond its ends the axis continues with
-    /// its outermost cubic.
+    /// Returns where the four coefficients about `x` are, and the uniform cubic B-spline's weights. Beyond the axis'
+    /// ends its outermost cubics continue.
     #[inline(always)]
     pub(crate) fn stencil(self, x: f64) -> Stencil {
         let t = (x - self.start) * self.per_unit;
@@ -90,7 +90,7 @@ impl Scale {
         }
     }
 
-    /// The stencils of two places: the same operations, side by side.
+    /// Returns the stencils of two places, by the same operations side by side.
     #[inline(always)]
     pub(crate) fn stencils(self, x: f64x2) -> StencilPair {
         let t = (x - self.start) * self.per_unit;
@@ -103,7 +103,7 @@ impl Scale {
         }
     }
 
-    /// The cell of `x`, within the axis, and how much of it lies before x.
+    /// Returns the cell of `x`, within the axis, and the share of it that lies before x.
     #[inline(always)]
     pub(super) fn cell_and_share(self, x: f64) -> (usize, f64) {
         let t = (x - self.start) * self.per_unit;
@@ -111,7 +111,7 @@ impl Scale {
         (cell as usize, t - f64::from(cell))
     }
 
-    /// The cells of two places.
+    /// Returns the cells of two places.
     pub(crate) fn cells(self, x: (f64, f64)) -> (usize, usize) {
         (self.cell_and_share(x.0).0, self.cell_and_share(x.1).0)
     }
@@ -129,24 +129,17 @@ impl Scale {
         (cells, t - before)
     }
 
-    /// The node nearest to `x`.
-    #[inline(always)]
-    pub(super) fn nearest(self, x: f64) -> usize {
-        let t = (x - self.start) * self.per_unit;
-        rounded(t, self.last_cell + 1) as usize
-    }
-
-    /// The cell of `t`, in units of cells, within the axis.
+    /// Returns the cell, within the axis, of a place `t` cells from the first node.
     #[inline(always)]
     fn cell(self, t: f64) -> u32 {
-        // Rounding t − ½ gives the cell; a node belongs to the one or the other of its cells, whose cubics agree
-        // there. Whatever the bits hold for a t that is no number of a cell, the index stays within the axis.
+        // Rounding t − ½ gives the cell. A node belongs to either of its cells, whose cubics agree there. For a t that
+        // is NaN or beyond the integers the index is arbitrary, but within the axis.
         rounded(t - 0.5, self.last_cell)
     }
 }
 
-/// Six times the uniform cubic B-spline's weights, at the share f of a cell; of one place, or of several side by
-/// side.
+/// Returns six times the uniform cubic B-spline's weights at the share f of a cell, for one place or for several side
+/// by side.
 #[inline(always)]
 fn weights<T>(f: T) -> [T; 4]
 where
@@ -163,7 +156,7 @@ where
     ]
 }
 
-/// The value at `stencil` of a spline of one variable.
+/// Returns the value of a spline of one variable at `stencil`.
 #[inline(always)]
 pub(crate) fn value(coefficients: &[f64], stencil: &Stencil) -> f64 {
     let c = &coefficients[stencil.first..stencil.first + 4];
@@ -290,8 +283,8 @@ pub(crate) fn thirds(coefficients: &[f64], axis: Scale) -> Vec<f64> {
     coefficients.windows(4).map(third).collect()
 }
 
-/// The values at two places of a spline of two variables, stored row by row: `rows` along the slow axis, `columns`
-/// along the fast one.
+/// Returns the values of a spline of two variables at two places. The coefficients are stored row by row, `width` in
+/// each; `rows` is the place along the slow axis, `columns` are the two places along the fast one.
 #[inline(always)]
 pub(crate) fn values_2d(
     coefficients: &[f64],
@@ -314,7 +307,7 @@ pub(crate) fn values_2d(
         + (w[2] * f64x2::new([high0[0], high1[0]]) + w[3] * f64x2::new([high0[1], high1[1]]))
 }
 
-/// The sums over four rows of four columns from `first` on, as two pairs.
+/// Returns the weighted sums over four rows of the four columns from `first` on, as two pairs.
 #[inline(always)]
 fn across_rows(
     coefficients: &[f64],
@@ -358,13 +351,13 @@ pub(crate) fn in_a_quarter(coefficients: &[f64], half: usize) -> f64 {
     }
 }
 
-/// The B-spline coefficients of the spline through `values`, one per node, over 6; `values.len() + 2` of them. (The
-/// weights of [`Scale::stencil`] are six times the B-spline's: it saves each lookup the division.)
+/// Computes the coefficients of the spline through `values`, one value for each node: `values.len() + 2` coefficients,
+/// each over 6. (The weights of [`Scale::stencil`] are six times the B-spline's, which saves each lookup the division.)
 ///
-/// Nodes: `f_i = c_i + δ²c_i/6`, one tridiagonal system, diagonally dominant, solved by elimination. Ends: turned
-/// round, that is `c = f − δ²f/6 + δ⁴f/36 − …`, taken at the second node with δ⁴f continued linearly from the next
-/// two, so that `c_1` is right to h⁶ as the inner coefficients are. (The usual "not a knot" drops the third term, and
-/// its error at the ends was measured at 4 to 11 times as much.)
+/// At the nodes `f_i = c_i + δ²c_i/6`: a tridiagonal system, diagonally dominant, solved by elimination. At the ends
+/// the inverse series `c = f − δ²f/6 + δ⁴f/36 − …` gives the coefficient of the second node, with δ⁴f continued
+/// linearly from the next two nodes: its error is of order h⁶, as that of the inner coefficients. (The usual "not a
+/// knot" condition drops the third term; its error at the ends was measured to be 4 to 11 times as large.)
 pub(crate) fn coefficients(values: &[f64]) -> Vec<f64> {
     let n = values.len();
     let at_second = |f: [f64; 6]| {
@@ -378,7 +371,7 @@ pub(crate) fn coefficients(values: &[f64]) -> Vec<f64> {
     c[n - 1] = at_second(core::array::from_fn(|i| values[n - 1 - i]));
     let pivot = |i: usize| PIVOTS[(i - 2).min(PIVOTS.len() - 1)];
     for i in 2..n - 2 {
-        // Row i: c_{i−1} + 4c_i + c_{i+1} = 6f_i, what is below the diagonal eliminated.
+        // Row i: c_{i−1} + 4c_i + c_{i+1} = 6f_i. This eliminates the term below the diagonal.
         let right = if i == n - 3 { c[n - 1] } else { 0.0 };
         c[i + 1] = (6.0 * values[i] - c[i] - right) * pivot(i);
     }
@@ -395,8 +388,8 @@ pub(crate) fn coefficients(values: &[f64]) -> Vec<f64> {
     c
 }
 
-/// The elimination's pivots, `1/(4 − the one before)`, from the first one on: each is 14 times closer to `2 − √3`, and
-/// the last one is it.
+/// The elimination's pivots, each `1/(4 − the one before)`. Each is 14 times closer to `2 − √3` than the one before;
+/// the last one is equal to it.
 const PIVOTS: [f64; 16] = {
     let mut pivots = [0.25; 16];
     let mut i = 1;
@@ -426,8 +419,8 @@ pub(crate) fn on_half_cells(coefficients: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// The coefficients of the two-dimensional spline through `values` (rows of `columns` nodes): first along each row,
-/// then along each column.
+/// Computes the coefficients of the two-dimensional spline through `values` (rows of `columns` nodes), first along each
+/// row, then along each column.
 pub(crate) fn coefficients_2d(values: &[f64], columns: usize) -> Vec<f64> {
     let along_rows: Vec<Vec<f64>> = values.chunks_exact(columns).map(coefficients).collect();
     let width = columns + 2;
@@ -450,7 +443,7 @@ mod tests {
     fn cubics_are_reproduced() {
         let cubic = |x: f64| 0.3 - 1.2 * x + 0.7 * x * x - 2.1 * x * x * x;
         for nodes in [6, 7, 8, 20] {
-            let axis = Axis {
+            let axis = NodeAxis {
                 start: -1.0,
                 end: 2.0,
                 nodes,
@@ -470,7 +463,7 @@ mod tests {
 
     #[test]
     fn jets_are_the_splines_derivatives() {
-        let axis = Scale::new(Axis {
+        let axis = Scale::new(NodeAxis {
             start: -1.0,
             end: 2.0,
             nodes: 9,
@@ -503,7 +496,7 @@ mod tests {
 
     #[test]
     fn half_cells_change_no_value() {
-        let axis = |nodes| Axis {
+        let axis = |nodes| NodeAxis {
             start: -1.0,
             end: 2.0,
             nodes,
@@ -530,7 +523,7 @@ mod tests {
     fn fourth_order() {
         let f = |x: f64, y: f64| libm::exp(x) * libm::sin(3.0 * y);
         let error = |nodes: u32| {
-            let axis = Axis {
+            let axis = NodeAxis {
                 start: 0.0,
                 end: 1.0,
                 nodes,

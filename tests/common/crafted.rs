@@ -3,7 +3,6 @@
 // Each test is a program of its own, and takes what it needs.
 #![allow(dead_code)]
 
-use darkness::table::FixedBytes;
 use darkness::table::format::{MAGIC, VERSION};
 
 /// Where the format's page has the preamble's fields.
@@ -14,36 +13,6 @@ pub(crate) const NUMBERS_CRC_AT: usize = 20;
 pub(crate) const NUMBERS_LENGTH_AT: usize = 24;
 pub(crate) const PREAMBLE_CRC_AT: usize = 32;
 pub(crate) const METADATA_AT: usize = 36;
-
-/// Bytes that begin at a multiple of 8, and can be changed.
-#[derive(Debug, Clone)]
-pub(crate) struct Aligned {
-    words: Vec<u64>,
-    pub(crate) length: usize,
-}
-
-impl Aligned {
-    pub(crate) fn new(bytes: &[u8]) -> Self {
-        let mut words = vec![0; bytes.len().div_ceil(8)];
-        bytemuck::cast_slice_mut(&mut words)[..bytes.len()].copy_from_slice(bytes);
-        Self {
-            words,
-            length: bytes.len(),
-        }
-    }
-
-    pub(crate) fn bytes_mut(&mut self) -> &mut [u8] {
-        &mut bytemuck::cast_slice_mut(&mut self.words)[..self.length]
-    }
-}
-
-impl FixedBytes for Aligned {}
-
-impl AsRef<[u8]> for Aligned {
-    fn as_ref(&self) -> &[u8] {
-        &bytemuck::cast_slice(&self.words)[..self.length]
-    }
-}
 
 pub(crate) fn write_u32(bytes: &mut [u8], at: usize, value: u32) {
     bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
@@ -56,7 +25,7 @@ pub(crate) fn mend_preamble(bytes: &mut [u8]) {
 }
 
 /// A file with the given metadata and numbers, every checksum and length of it right.
-pub(crate) fn sealed(metadata: &[u8], numbers: &[u8]) -> Aligned {
+pub(crate) fn sealed(metadata: &[u8], numbers: &[u8]) -> Vec<u8> {
     let mut bytes = vec![0; METADATA_AT];
     bytes[..8].copy_from_slice(&MAGIC);
     write_u32(&mut bytes, VERSION_AT, VERSION);
@@ -69,5 +38,5 @@ pub(crate) fn sealed(metadata: &[u8], numbers: &[u8]) -> Aligned {
     bytes.extend(metadata);
     bytes.resize(bytes.len().next_multiple_of(64), 0);
     bytes.extend(numbers);
-    Aligned::new(&bytes)
+    bytes
 }

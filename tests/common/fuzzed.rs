@@ -9,9 +9,9 @@ mod crafted;
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
-use crafted::{Aligned, METADATA_AT, METADATA_LENGTH_AT, sealed};
+use crafted::{METADATA_AT, METADATA_LENGTH_AT, sealed};
+use darkness::cli::rays::RayReader;
 use darkness::isoradial::{Isoradials, Sight};
-use darkness::orbit::csv::Rays;
 use darkness::orbit::exact::Exact;
 use darkness::orbit::path::SweptAngles;
 use darkness::orbit::{Event, EventKind, Orbits, Ray};
@@ -19,17 +19,15 @@ use darkness::render::needs::Needs;
 use darkness::render::{coverage, mask};
 use darkness::scene::animation::FrameRange;
 use darkness::scene::{Animation, Scene, View};
-use darkness::table::{FixedBytes, FormatError, Memory, Spec, Table, generate};
+use darkness::table::{Spec, Table};
 
 /// The bytes as a table's file: as they are, and with every checksum and length made right, so that what they guard is read.
 pub(crate) fn table(bytes: &[u8]) {
     let mended = mended(bytes);
     let both: [&[u8]; 2] = [bytes, &mended];
     for bytes in &both[usize::from(mended == bytes)..] {
-        // Numbers are read in place.
-        match Table::from_bytes(Aligned::new(bytes)) {
-            Ok(table) => use_table(&table),
-            Err(problem) => assert_ne!(problem, FormatError::Misaligned),
+        if let Ok(table) = Table::from_bytes(bytes) {
+            use_table(&table);
         }
     }
 }
@@ -44,12 +42,10 @@ fn mended(bytes: &[u8]) -> Vec<u8> {
     let end = METADATA_AT + metadata;
     let numbers = end.next_multiple_of(64).min(bytes.len());
     sealed(&bytes[METADATA_AT..end], &bytes[numbers..])
-        .as_ref()
-        .to_vec()
 }
 
 /// Rays, curves and frames from a table whose numbers may be anything finite: whatever they are, they come to an end.
-fn use_table<B: FixedBytes + Sync>(table: &Table<B>) {
+fn use_table(table: &Table) {
     let lookup = table.lookup();
     for (u, slope) in RAYS {
         let ray = Ray::new(u, slope).unwrap();
@@ -132,9 +128,9 @@ fn sentence(error: &impl std::error::Error) {
     assert!(!message.contains(obeyed), "{message:?}");
 }
 
-fn draft() -> &'static Table<Memory> {
-    static DRAFT: OnceLock<Table<Memory>> = OnceLock::new();
-    DRAFT.get_or_init(|| generate(&Spec::named("draft").unwrap(), &|_, _| ()).unwrap())
+fn draft() -> &'static Table {
+    static DRAFT: OnceLock<Table> = OnceLock::new();
+    DRAFT.get_or_init(|| Table::generate(&Spec::draft()).unwrap())
 }
 
 /// The bytes as a range of frames: its numbers rise, are counted, and are those of its own form.
@@ -176,7 +172,7 @@ pub(crate) fn frames(bytes: &[u8]) {
 
 /// The bytes as a list of rays: each line is a ray or a sentence, and each ray ends.
 pub(crate) fn rays(bytes: &[u8]) {
-    let mut rays = match Rays::new(bytes, "list".into()) {
+    let mut rays = match RayReader::new(bytes, "list".into()) {
         Ok(rays) => rays,
         Err(error) => return sentence(&error),
     };

@@ -7,14 +7,11 @@ use crate::chart::methods::Method;
 use crate::orbit::Fate;
 
 /// Returns the style and the label of a point's method and setting.
-fn style(point: &CriticalPoint) -> Option<(SeriesStyle, String)> {
+fn style(point: &CriticalPoint) -> (SeriesStyle, String) {
     let row = &point.measurement;
     let (mut style, label) = SeriesStyle::of(row.method);
     let (knob, _) = row.setting.split_once(' ').unwrap_or_default();
     let label = match row.method {
-        // The standard table is the cubic splines on the standard grid: one line shows both.
-        Method::Cubic => return None,
-        Method::TableStandard => "table standard = cubic".to_owned(),
         Method::Adaptive => "adaptive 10⁻⁹".to_owned(),
         Method::Euler | Method::Rk4 => format!("{label} {}", knob.replace('=', " = ")),
         _ => label.to_owned(),
@@ -23,7 +20,7 @@ fn style(point: &CriticalPoint) -> Option<(SeriesStyle, String)> {
     if knob == "h=0.05" {
         style.dash = (10, 6);
     }
-    Some((style, label))
+    (style, label)
 }
 
 /// Returns a line for each method and setting, from the points of rays with this fate. The order of the lines and of the
@@ -32,9 +29,7 @@ fn lines(critical: &CriticalPanel, fate: Fate) -> Vec<PlotLine> {
     let mut lines: Vec<PlotLine> = Vec::new();
     let mut failing = Vec::new();
     for point in &critical.points {
-        let Some((style, label)) = style(point) else {
-            continue;
-        };
+        let (style, label) = style(point);
         if lines.last().is_none_or(|line| line.label != label) {
             lines.push(PlotLine::new((style, &label), Vec::new()));
         }

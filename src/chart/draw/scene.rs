@@ -27,9 +27,9 @@ const ENDS: [i32; WRONG] = [px(222), px(400), px(578)];
 /// Draws the panel.
 pub(super) fn draw(area: &PageArea<'_>, scene: &ScenePanel) -> Result<(), DrawError> {
     let caption = format!(
-        "{} at {} × {}, whole frames on one thread. Upper row: tables, grids of the standard size and exact angles\n\
-         give isoradial curves, at several tolerances, and the frame is filled between them. Lower row: Euler, RK4\n\
-         and adaptive step along every pixel's ray, timed on an even sample. Displacement: the largest of an edge at\n\
+        "{} at {} × {}, whole frames on one thread. Upper row: tables and the exact method give isoradial\n\
+         curves, at several tolerances, and the frame is filled between them. Lower row: Euler, RK4 and adaptive\n\
+         step along every pixel's ray, timed on an even sample. Displacement: the largest of an edge at\n\
          {} angles; line: the {:?} pixels allowed; cross at the top: an edge was lost. Wrong pixels: the share of\n\
          {} that differ from their exact rays; of slow methods fewer are compared (see the CSV).",
         scene.name,
@@ -86,10 +86,9 @@ fn lines(
         (SeriesStyle::line(BLACK, 2), "allowed"),
         allowed,
     )];
-    // The standard table is the cubic splines on the standard grid: one line shows both.
     for method in Method::ALL
         .into_iter()
-        .filter(|method| *method != Method::Cubic)
+        .filter(|method| *method != Method::TableScaled)
     {
         let mut line = PlotLine::new(SeriesStyle::of(method), Vec::new());
         for point in points.iter().filter(|point| point.method == method) {

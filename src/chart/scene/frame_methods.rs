@@ -61,28 +61,6 @@ pub(super) fn sources(tables: &Tables) -> Vec<CurveSource<'_>> {
             angles: Box::new(table.lookup()),
         });
     }
-    if let Some((nearest, linear, cubic)) = tables.standard_grid() {
-        let source = |method, bytes, angles| CurveSource {
-            method,
-            table_bytes: Some(bytes),
-            angles,
-        };
-        all.push(source(
-            Method::Nearest,
-            nearest.bytes(),
-            Box::new(nearest.lookup()),
-        ));
-        all.push(source(
-            Method::Linear,
-            linear.bytes(),
-            Box::new(linear.lookup()),
-        ));
-        all.push(source(
-            Method::Cubic,
-            cubic.bytes(),
-            Box::new(cubic.lookup()),
-        ));
-    }
     all.push(CurveSource {
         method: Method::Exact,
         table_bytes: None,

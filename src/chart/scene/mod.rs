@@ -1,6 +1,6 @@
 //! The third panel: the time and the error of a scene's frame.
 //!
-//! Tables, grids and the exact method build isoradial curves, at several tolerances, and a frame is rendered from the
+//! Tables and the exact method build isoradial curves, at several tolerances, and a frame is rendered from the
 //! curves. The integrators step along every pixel's ray. Measured for both are the displacement of each edge of the
 //! disk, by order (`edges.rs`), and the number of wrong pixels (`frames.rs`). Times are those of a whole frame on one
 //! thread: curves and frame together, or for the integrators the time of an evenly spread sample of pixels, scaled to

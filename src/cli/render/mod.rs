@@ -198,7 +198,7 @@ fn explain_one(
 /// The method, its table made where that is allowed.
 fn ready(args: &RenderArgs, checked: Checked, report: Report) -> anyhow::Result<Method> {
     if args.require_table {
-        Ok(checked.without_making()?)
+        checked.without_making()
     } else {
         checked.ready(report)
     }

@@ -1,23 +1,23 @@
-//! Steps as long as an error estimate allows.
+//! Integration in steps as long as an error estimate allows.
 
-use super::crossings::{Crossings, Log, Piece};
-use super::{
-    DEFAULT_MAX_STEPS, Departure, Flight, State, acceleration, depart, dop853, opposite, root,
-};
-use crate::orbit::{Event, OrbitError, Orbits, Ray, TurningPoint, WatchedRadius};
+use super::crossings::{CrossingSearch, EventLog, MonotonePiece};
+use super::flight::{DEFAULT_MAX_STEPS, Departure, Flight, State, acceleration, depart, opposite};
+use super::{dop853, root};
+use crate::orbit::events::{Event, Orbits, TurningPoint, WatchedRadius};
+use crate::orbit::ray::{OrbitError, Ray};
 
 /// The orbit equation integrated with the Runge–Kutta method DOP853 in steps that keep each swept angle's error below
 /// a tolerance.
 ///
-/// Crossings and turning points are not interpolated: the step is taken again from its start, with the fraction of
-/// its length at which u is the radius (or du/dφ is 0), found by Newton's method.
+/// Crossings and turning points are not interpolated: the step is taken again from its start, with the length at which
+/// u is the radius (or du/dφ is 0), found by Newton's method.
 ///
 /// # Accuracy
-/// `tolerance` (radians; more than 1e-3 counts as 1e-3, and from 1e-10 down the steps are as short as rounding makes
-/// worthwhile) bounds the error of every angle below 10 radians, beside what rounding the ray's own two numbers does
-/// to it (some 2⁻⁵² times |∂angle/∂ln dudphi| + |∂angle/∂ln u0|). Beyond that, near the photon sphere, errors grow as
-/// e^angle, and a ray some units in the last place from critical may end on the wrong side. So may a ray whose
-/// turning point comes within a share of 1e-5 `tolerance` of a watched radius be told to cross it or not.
+/// `tolerance` bounds the error of every angle below 10 radians (up to the rounding of the ray's two numbers, which
+/// changes the angle by some 2⁻⁵² times |∂angle/∂ln dudphi| + |∂angle/∂ln u0|). More than 1e-3 radians counts as 1e-3;
+/// from 1e-10 down the steps are as short as rounding makes worthwhile. Beyond 10 radians, near the photon sphere,
+/// errors grow as e^angle, and a ray a few units in the last place from critical may end on the wrong side. Whether a
+/// ray crosses a radius is not certain where its turning point comes within a share of 1e-5 `tolerance` of it.
 ///
 /// ```
 /// use darkness::orbit::{EventKind, Fate, Orbits, Ray, integrate::Adaptive};
@@ -30,39 +30,39 @@ use crate::orbit::{Event, OrbitError, Orbits, Ray, TurningPoint, WatchedRadius};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Adaptive {
-    /// Error allowed in a swept angle, in radians.
+    /// The error allowed in a swept angle, in radians.
     pub tolerance: f64,
-    /// Steps, refused ones included, after which [`OrbitError::StepLimit`] is returned.
+    /// The number of steps, refused ones included, after which [`OrbitError::StepLimit`] is returned.
     pub max_steps: u64,
 }
 
-/// Share of the tolerance that one step may err by, relative to hypot(u, w).
+/// The error allowed in one step relative to hypot(u, w), as a share of the tolerance.
 ///
-/// Beside the photon sphere, the phase plane's saddle with eigenvalues ±1, an error grows as e^φ: e¹⁰ = 2.2e4 in ten
-/// radians. The steps' errors add up to at most e¹⁰/(e^h − 1) times that of the first, with steps of h ≈ 0.3 three
-/// times as much; and 1/6e4 is rounded down to this.
+/// Near the photon sphere, the phase plane's saddle with eigenvalues ±1, an error grows as e^φ, by e¹⁰ = 2.2e4 in ten
+/// radians. The steps' errors add up to at most e¹⁰/(e^h − 1) times that of the first, which is three times e¹⁰ for
+/// steps of h ≈ 0.3. 1/6e4 is rounded down to this.
 const STEP_SHARE: f64 = 1e-5;
 
-/// The smallest error per step worth asking for, five units in the last place: below it a step's own rounding
-/// decides.
+/// The smallest error of a step worth asking for: five units in the last place. Below it the step's own rounding is
+/// larger.
 const FINEST: f64 = 1e-15;
 
-/// The largest error per step allowed: the estimate means nothing where it is not small.
+/// The largest error of a step allowed. The estimate is valid only where it is small.
 const COARSEST: f64 = 1e-8;
 
-/// The first step, where du/dφ is moderate; the first error estimate corrects it.
+/// The length of the first step where du/dφ is moderate. The first error estimate corrects it.
 const FIRST_STEP: f64 = 0.1;
 
-/// The longest step. From periapsis to infinity a ray sweeps more than π/2, and [`LONGEST_FALL`] stops it soon
-/// beyond: du/dφ never changes sign twice in one step, which would hide both turns.
+/// The longest step. From periapsis to infinity a ray sweeps more than π/2, and [`LONGEST_FALL`] stops it soon beyond,
+/// so that du/dφ never changes sign twice in one step, which would hide both turns.
 const LONGEST_STEP: f64 = 0.5;
 
-/// The largest change of u in one step, to first order: the whole flight has 1 to go, and far beyond its ends the
-/// equation's u² runs away, at its next turning point (u < 0) or to infinity (u > 1).
+/// The largest change of u in one step, to first order. The whole flight changes u by less than 1, and far beyond its
+/// ends the equation's u² runs away, to its next turning point (u < 0) or to infinity (u > 1).
 const LONGEST_FALL: f64 = 0.5;
 
 impl Adaptive {
-    /// Integration to `tolerance` radians, with at most 100,000 steps.
+    /// Integrates to `tolerance` radians in at most 100,000 steps.
     pub fn new(tolerance: f64) -> Self {
         Self {
             tolerance,
@@ -93,12 +93,12 @@ impl Orbits for Adaptive {
 }
 
 impl Flight for Adaptive {
-    fn fly<'a, L: Log>(
+    fn fly<'a, L: EventLog>(
         &self,
         ray: Ray,
         watched: &'a [WatchedRadius],
         log: L,
-    ) -> Result<Crossings<'a, L>, OrbitError> {
+    ) -> Result<CrossingSearch<'a, L>, OrbitError> {
         let (mut state, mut crossings) = match depart(ray, watched, log) {
             Departure::Done(crossings) => return Ok(crossings),
             Departure::Bound(state, crossings) => (state, crossings),
@@ -109,8 +109,8 @@ impl Flight for Adaptive {
         for _ in 0..self.max_steps {
             h = h.min(LONGEST_STEP).min(LONGEST_FALL / state.w.abs());
             let (next, error) = dop853::step_with_error(state, h);
-            // The estimate falls as h⁸; 0.9 is the usual allowance for its own error (Hairer, Nørsett & Wanner,
-            // §II.4), and the bounds keep one odd estimate from deciding too much.
+            // The estimate falls as h⁸. 0.9 is the usual allowance for its own error (Hairer, Nørsett & Wanner, §II.4),
+            // and the bounds limit the effect of one odd estimate.
             let factor = 0.9 / (error / allowed).sqrt().sqrt().sqrt();
             if error > allowed {
                 h *= factor.max(0.2);
@@ -132,10 +132,10 @@ impl Flight for Adaptive {
     }
 }
 
-/// Reports what is met on the step of length `h` from `from`, at swept angle `angle`, to `to`. Returns whether the
+/// Reports the events on the step of length `h` from `from`, at swept angle `angle`, to `to`. Returns whether the
 /// flight ends on it.
-fn pass_step<L: Log>(
-    crossings: &mut Crossings<'_, L>,
+fn pass_step<L: EventLog>(
+    crossings: &mut CrossingSearch<'_, L>,
     from: State,
     to: State,
     h: f64,
@@ -143,7 +143,7 @@ fn pass_step<L: Log>(
 ) -> bool {
     let inward = from.w > 0.0 || (from.w == 0.0 && to.u > from.u);
     if !opposite(from.w, to.w) {
-        let piece = Piece {
+        let piece = MonotonePiece {
             from: from.u,
             to: to.u,
             inward,
@@ -160,13 +160,13 @@ fn pass_step<L: Log>(
     });
     let turning = dop853::step(from, turn).u;
     crossings.turn(turning, angle + turn);
-    let towards = Piece {
+    let towards = MonotonePiece {
         from: from.u,
         to: turning,
         inward,
         turns: true,
     };
-    let back = Piece {
+    let back = MonotonePiece {
         from: turning,
         to: to.u,
         inward: !inward,
@@ -176,10 +176,10 @@ fn pass_step<L: Log>(
         || pass_piece(crossings, back, (turn, h), from, angle)
 }
 
-/// Reports what is met on the piece between the two fractions `(first, last)` of a step.
-fn pass_piece<L: Log>(
-    crossings: &mut Crossings<'_, L>,
-    piece: Piece,
+/// Reports the events on the piece between the two parts `(first, last)` of a step.
+fn pass_piece<L: EventLog>(
+    crossings: &mut CrossingSearch<'_, L>,
+    piece: MonotonePiece,
     (first, last): (f64, f64),
     from: State,
     angle: f64,

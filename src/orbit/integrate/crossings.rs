@@ -1,36 +1,36 @@
-//! Which watched radii a piece of a path passes, in order.
+//! Finds the watched radii that a piece of a path passes, in order.
 
-use crate::orbit::{Event, EventKind, Fate, TurningPoint, WatchedRadius};
+use crate::orbit::events::{Event, EventKind, Fate, TurningPoint, WatchedRadius};
 
 /// A piece of a path along which u only rises or only falls.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Piece {
-    /// u where it begins. What happened there was reported with the piece before.
+pub(super) struct MonotonePiece {
+    /// u where it begins. Events there were reported with the piece before.
     pub(super) from: f64,
     /// u where it ends.
     pub(super) to: f64,
-    /// Whether u rises. Told apart from `from` and `to`, which may be equal or, at a turning point, rounded.
+    /// Whether u rises. (`from` and `to` may be equal or, at a turning point, rounded.)
     pub(super) inward: bool,
-    /// Whether the ray turns back at its end: a radius just touched there is not crossed.
+    /// Whether the ray turns back at its end. A radius that it only touches there is not crossed.
     pub(super) turns: bool,
 }
 
-/// What is kept of a flight's events.
-pub(super) trait Log {
-    /// Takes the next event, and tells whether another is wanted.
+/// Keeps a flight's events.
+pub(super) trait EventLog {
+    /// Takes the next event, and returns whether another is wanted.
     fn take(&mut self, event: Event) -> bool;
 }
 
-/// All of them.
-impl Log for Vec<Event> {
+/// Keeps all of them.
+impl EventLog for Vec<Event> {
     fn take(&mut self, event: Event) -> bool {
         self.push(event);
         true
     }
 }
 
-/// The first.
-impl Log for Option<Event> {
+/// Keeps the first.
+impl EventLog for Option<Event> {
     fn take(&mut self, event: Event) -> bool {
         *self = Some(event);
         false
@@ -39,19 +39,19 @@ impl Log for Option<Event> {
 
 /// The events of a flight so far, and the radii it may cross next.
 #[derive(Debug)]
-pub(super) struct Crossings<'a, L> {
-    /// By ascending u.
+pub(super) struct CrossingSearch<'a, L> {
+    /// The radii, by ascending u.
     watched: &'a [WatchedRadius],
     log: L,
     turning_point: Option<TurningPoint>,
-    /// Nearest level of u (a watched radius, infinity or the horizon) at or below the present u.
+    /// The nearest level of u (a watched radius, infinity or the horizon) at or below the present u.
     below: f64,
-    /// Nearest level at or above the present u.
+    /// The nearest level at or above the present u.
     above: f64,
 }
 
-impl<'a, L: Log> Crossings<'a, L> {
-    /// A flight that begins at `u`, watched at `watched` (by ascending u).
+impl<'a, L: EventLog> CrossingSearch<'a, L> {
+    /// Begins a flight at `u` that reports the crossings of `watched` (by ascending u).
     pub(super) fn new(watched: &'a [WatchedRadius], log: L, u: f64) -> Self {
         let mut crossings = Self {
             watched,
@@ -64,19 +64,23 @@ impl<'a, L: Log> Crossings<'a, L> {
         crossings
     }
 
-    /// Whether nothing is met on the way from the present u straight to `u`: the question asked at every step.
+    /// Returns whether no level lies between the present u and `u`. Called at every step.
     #[inline]
     pub(super) fn clear_until(&self, u: f64) -> bool {
-        // From a watched radius itself the answer is always no, since both bounds are that radius: the way back
-        // through it must not be missed.
+        // At a watched radius both bounds are that radius and the answer is no, so that the way back through it is not
+        // missed.
         self.below < u && u < self.above
     }
 
-    /// Reports what is met along a piece, `angle_at(u)` being the swept angle at which the piece reaches u; it is
-    /// asked in the order the ray meets them. Returns whether the flight ends on it, or has been followed as far as is
-    /// wanted.
-    pub(super) fn pass(&mut self, piece: Piece, mut angle_at: impl FnMut(f64) -> f64) -> bool {
-        let Piece {
+    /// Reports the events along a piece. `angle_at(u)` returns the swept angle at which the piece reaches u; it is
+    /// called in the order in which the ray meets the radii. Returns whether the flight ends on the piece, or no
+    /// further event is wanted.
+    pub(super) fn pass(
+        &mut self,
+        piece: MonotonePiece,
+        mut angle_at: impl FnMut(f64) -> f64,
+    ) -> bool {
+        let MonotonePiece {
             from,
             to,
             inward,
@@ -86,7 +90,7 @@ impl<'a, L: Log> Crossings<'a, L> {
             self.watched
                 .partition_point(|watched| watched.u < level || (inclusive && watched.u == level))
         };
-        // Inward (from, to], outward [to, from): each level belongs to one of two pieces that meet there.
+        // Inward (from, to], outward [to, from): of two pieces that meet at a level, one contains it.
         let range = if inward {
             index(from, true)..index(to, !turns)
         } else {
@@ -143,17 +147,17 @@ impl<'a, L: Log> Crossings<'a, L> {
         self.above = self.watched.get(below).map_or(1.0, |level| level.u);
     }
 
-    /// Reports that the flight turned back.
+    /// Records where the flight turned back.
     pub(super) fn turn(&mut self, u: f64, angle: f64) {
         self.turning_point.get_or_insert(TurningPoint { u, angle });
     }
 
-    /// Where the flight turned back.
+    /// Returns where the flight turned back.
     pub(super) fn turning_point(&self) -> Option<TurningPoint> {
         self.turning_point
     }
 
-    /// What was reported.
+    /// Returns the events.
     pub(super) fn into_log(self) -> L {
         self.log
     }
@@ -162,14 +166,13 @@ impl<'a, L: Log> Crossings<'a, L> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::orbit::inverse_radii;
 
     fn radii_met(pieces: &[(f64, f64, bool)]) -> Vec<f64> {
-        let watched = inverse_radii(&[2.0, 4.0, 8.0]).unwrap();
-        let mut crossings = Crossings::new(&watched, Vec::new(), pieces[0].0);
+        let watched = WatchedRadius::sorted(&[2.0, 4.0, 8.0]).unwrap();
+        let mut crossings = CrossingSearch::new(&watched, Vec::new(), pieces[0].0);
         for &(from, to, turns) in pieces {
             crossings.pass(
-                Piece {
+                MonotonePiece {
                     from,
                     to,
                     inward: to > from,
@@ -211,11 +214,11 @@ mod tests {
 
     #[test]
     fn nothing_is_clear_from_a_level_itself() {
-        let watched = inverse_radii(&[4.0]).unwrap();
-        let mut crossings = Crossings::new(&watched, Vec::new(), 0.25);
+        let watched = WatchedRadius::sorted(&[4.0]).unwrap();
+        let mut crossings = CrossingSearch::new(&watched, Vec::new(), 0.25);
         assert!(!crossings.clear_until(0.3) && !crossings.clear_until(0.2));
         crossings.pass(
-            Piece {
+            MonotonePiece {
                 from: 0.25,
                 to: 0.3,
                 inward: true,

@@ -1,19 +1,19 @@
-//! Whether a ray meets the disk, by steps of one length: the renderer's baseline.
+//! Tells whether a ray meets the disk, in steps of one length: the renderer's baseline.
 
 use core::f64::consts::PI;
 
-use super::State;
 use super::fixed::{FixedStep, Scheme, euler, rk4};
+use super::flight::State;
 use crate::orbit::Ray;
 
 impl FixedStep {
-    /// Whether a ray meets the disk: whether at any of the orbit angles `first_crossing + kπ`, k = 0, 1, 2 …, where
-    /// it passes the disk's plane, its u lies between `u_outer` and `u_inner`.
+    /// Returns whether a ray meets the disk: whether its u lies between `u_outer` and `u_inner` at any of the orbit
+    /// angles `first_crossing + kπ`, k = 0, 1, 2 …, where it passes the disk's plane.
     ///
-    /// `first_crossing` is in [0, π); at 0 the ray starts in the plane, which is no crossing, and the first is at π.
-    /// Between two crossings the steps are equal, of `h` or a little less, so that each crossing is a step's end and
-    /// nothing is interpolated. False at capture, escape, for du/dφ = ±∞ (which never meets the plane), and after
-    /// `max_steps`.
+    /// `first_crossing` is in [0, π). At 0 the ray starts in the plane, which is not a crossing, and its first crossing
+    /// is at π. Between two crossings the steps are equal, of `h` or a little less, so that each crossing is the end of
+    /// a step and nothing is interpolated. Returns false for a ray that ends first, for du/dφ = ±∞ (which never meets
+    /// the plane), and after `max_steps`.
     pub fn disk_hit(&self, ray: Ray, first_crossing: f64, u_inner: f64, u_outer: f64) -> bool {
         match self.scheme {
             Scheme::Euler => self.disk_hit_by(euler, ray, first_crossing, u_inner, u_outer),
@@ -33,7 +33,7 @@ impl FixedStep {
         if self.h.is_nan() || self.h <= 0.0 {
             return false;
         }
-        // Inside the photon sphere no ray that goes inward turns, outside it none that goes outward.
+        // Inside the photon sphere rays that go inward do not turn, outside it rays that go outward do not.
         let lost_above = u_inner.max(2.0 / 3.0);
         let lost_below = u_outer.min(2.0 / 3.0);
         let mut state = State {
@@ -56,7 +56,7 @@ impl FixedStep {
             for _ in 0..steps as u64 {
                 state = step(state, h);
                 let State { u, w } = state;
-                // Asked so that a state that overflowed to NaN stops here too.
+                // A state that overflowed to NaN is not in flight either.
                 let in_flight = u > 0.0 && u < 1.0;
                 if !in_flight || (w < 0.0 && u < lost_below) || (w > 0.0 && u > lost_above) {
                     return false;

@@ -9,11 +9,11 @@
     reason = "the coefficients stand as published"
 )]
 
-use super::{State, acceleration};
+use super::flight::{State, acceleration};
 
 const STAGES: usize = 12;
 
-/// `a_ij`: the weight of slope j in the place where slope i + 1 is taken.
+/// `a_ij`: the weight of slope j in the state at which slope i + 1 is taken.
 const A: [&[f64]; STAGES - 1] = [
     &[5.26001519587677318785587544488e-2],
     &[
@@ -119,7 +119,7 @@ const B: [f64; STAGES] = [
     4.47106157277725905176885569043e-2,
 ];
 
-/// The weights of order 8 less those of order 5.
+/// The weights of order 8 minus those of order 5.
 const ERROR_5: [f64; STAGES] = [
     0.1312004499419488073250102996e-1,
     0.0,
@@ -135,14 +135,14 @@ const ERROR_5: [f64; STAGES] = [
     -0.2235530786388629525884427845e-1,
 ];
 
-/// The weights of order 3, of slopes 0, 8 and 11.
+/// The weights of order 3, for the slopes 0, 8 and 11.
 const ORDER_3: [f64; 3] = [
     0.244094488188976377952755905512,
     0.733846688281611857341361741547,
     0.0220588235294117647058823529412,
 ];
 
-/// Slopes (du/dφ, dw/dφ) at the stages of a step.
+/// Computes the slopes (du/dφ, dw/dφ) at the stages of a step.
 type Slopes = [[f64; 2]; STAGES];
 
 fn weighted(weights: &[f64], slopes: &Slopes) -> [f64; 2] {
@@ -171,15 +171,15 @@ fn arrive(from: State, h: f64, [du, dw]: [f64; 2]) -> State {
     }
 }
 
-/// The state an angle `h` on.
+/// Computes the state an angle `h` on.
 pub(super) fn step(from: State, h: f64) -> State {
     arrive(from, h, weighted(&B, &slopes(from, h)))
 }
 
-/// The state an angle `h` on, and the estimated error of u and w together as a share of hypot(u, w).
+/// Computes the state an angle `h` on, and the estimated error of u and w together as a share of hypot(u, w).
 ///
-/// That share is what an angle's error is made of: where the orbit's slope is not small against u, an error δu moves
-/// every later angle by about δu/|w| ≤ δu/hypot(u, w) times a constant, for far rays (u, w of 1e-12) as for near.
+/// The error of an angle depends on that share: where the orbit's slope is not small against u, an error δu moves every
+/// later angle by about δu/|w| ≤ δu/hypot(u, w) times a constant, for far rays (u, w of 1e-12) as for near ones.
 pub(super) fn step_with_error(from: State, h: f64) -> (State, f64) {
     let slopes = slopes(from, h);
     let order_8 = weighted(&B, &slopes);

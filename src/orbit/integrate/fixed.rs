@@ -1,35 +1,38 @@
-//! Steps of one length.
+//! Integration in steps of one length.
 
-use super::crossings::{Crossings, Log, Piece};
-use super::{DEFAULT_MAX_STEPS, Departure, Flight, State, acceleration, depart, opposite, root};
-use crate::orbit::{Event, OrbitError, Orbits, Ray, TurningPoint, WatchedRadius};
+use super::crossings::{CrossingSearch, EventLog, MonotonePiece};
+use super::flight::{DEFAULT_MAX_STEPS, Departure, Flight, State, acceleration, depart, opposite};
+use super::root;
+use crate::orbit::events::{Event, Orbits, TurningPoint, WatchedRadius};
+use crate::orbit::ray::{OrbitError, Ray};
 
 /// How a step is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Scheme {
     /// Euler's method, of order 1; crossings by linear interpolation.
     Euler,
-    /// The classical Runge–Kutta method, of order 4; crossings on the cubic that has the step's u and du/dφ at both
-    /// ends (Hermite's), whose error is of order 4 too.
+    /// The classical Runge–Kutta method, of order 4; crossings by the Hermite cubic through the step's u and du/dφ at
+    /// both ends, whose error is of order 4 too.
     Rk4,
 }
 
-/// The orbit equation integrated in steps of one length: what a renderer tries first, and the baseline for all else.
+/// The orbit equation integrated in steps of one length: what a renderer tries first, and the baseline of all
+/// comparisons.
 ///
-/// A ray with `e² = (du/dφ)² + u²(1 − u) > 1/h²` is stepped with 1/e in place of h, so that no step goes further
-/// than from the horizon to infinity. A step `h` that is not above 0 gets nowhere: [`OrbitError::StepLimit`].
+/// A ray with `e² = (du/dφ)² + u²(1 − u) > 1/h²` takes steps of 1/e in place of h, so that no step is longer than the
+/// way from the horizon to infinity. A step `h` that is not above 0 gives [`OrbitError::StepLimit`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FixedStep {
     /// How a step is taken.
     pub scheme: Scheme,
-    /// Length of a step in φ, in radians; 0.02 is typical.
+    /// The length of a step in φ, in radians; 0.02 is typical.
     pub h: f64,
-    /// Steps after which [`OrbitError::StepLimit`] is returned.
+    /// The number of steps after which [`OrbitError::StepLimit`] is returned.
     pub max_steps: u64,
 }
 
 impl FixedStep {
-    /// Steps of `h` radians, at most 100,000 of them.
+    /// Integrates in steps of `h` radians, at most 100,000 of them.
     pub fn new(scheme: Scheme, h: f64) -> Self {
         Self {
             scheme,
@@ -39,14 +42,14 @@ impl FixedStep {
     }
 
     #[inline]
-    fn fly_by<'a, L: Log>(
+    fn fly_by<'a, L: EventLog>(
         &self,
         step: impl Fn(State, f64) -> State,
-        pass_step: impl Fn(&mut Crossings<'a, L>, &Step) -> bool,
+        pass_step: impl Fn(&mut CrossingSearch<'a, L>, &Step) -> bool,
         ray: Ray,
         watched: &'a [WatchedRadius],
         log: L,
-    ) -> Result<Crossings<'a, L>, OrbitError> {
+    ) -> Result<CrossingSearch<'a, L>, OrbitError> {
         let (mut from, mut crossings) = match depart(ray, watched, log) {
             Departure::Done(crossings) => return Ok(crossings),
             Departure::Bound(state, crossings) => (state, crossings),
@@ -85,12 +88,12 @@ impl FixedStep {
 }
 
 impl Flight for FixedStep {
-    fn fly<'a, L: Log>(
+    fn fly<'a, L: EventLog>(
         &self,
         ray: Ray,
         watched: &'a [WatchedRadius],
         log: L,
-    ) -> Result<Crossings<'a, L>, OrbitError> {
+    ) -> Result<CrossingSearch<'a, L>, OrbitError> {
         match self.scheme {
             Scheme::Euler => self.fly_by(euler, pass_line, ray, watched, log),
             Scheme::Rk4 => self.fly_by(rk4, pass_cubic, ray, watched, log),
@@ -129,9 +132,9 @@ pub(super) fn euler(at: State, h: f64) -> State {
     }
 }
 
-/// The classical method with its slopes of u written out: since `dw/dφ` depends on u alone, its four stages are
-/// these, in the form of Nyström (Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, §II.14), and
-/// two of them can be computed at once.
+/// Takes a step of the classical method with its slopes of u written out. Since `dw/dφ` depends on u alone, its four
+/// stages have the form of Nyström (Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, §II.14), and
+/// two of them can be computed at the same time.
 #[inline]
 pub(super) fn rk4(State { u, w }: State, h: f64) -> State {
     let half = 0.5 * h;
@@ -148,11 +151,11 @@ pub(super) fn rk4(State { u, w }: State, h: f64) -> State {
     }
 }
 
-/// Reports what is met on a step of Euler's method, a straight line. Returns whether the flight ends on it.
-fn pass_line<L: Log>(crossings: &mut Crossings<'_, L>, step: &Step) -> bool {
+/// Reports the events on a step of Euler's method, a straight line. Returns whether the flight ends on it.
+fn pass_line<L: EventLog>(crossings: &mut CrossingSearch<'_, L>, step: &Step) -> bool {
     let Step { from, to, h, angle } = *step;
-    // The polygon turns at its corners: where du/dφ changes sign over the step, u still follows the first.
-    let piece = Piece {
+    // The polygon turns at its corners: where du/dφ changes sign over the step, u still follows the first sign.
+    let piece = MonotonePiece {
         from: from.u,
         to: to.u,
         inward: from.w > 0.0,
@@ -164,13 +167,13 @@ fn pass_line<L: Log>(crossings: &mut Crossings<'_, L>, step: &Step) -> bool {
     crossings.pass(piece, |u| angle + h * ((u - from.u) / (to.u - from.u)))
 }
 
-/// Reports what is met on a step of the Runge–Kutta method, by its cubic. Returns whether the flight ends on it.
-fn pass_cubic<L: Log>(crossings: &mut Crossings<'_, L>, step: &Step) -> bool {
+/// Reports the events on a step of the Runge–Kutta method, on its cubic. Returns whether the flight ends on it.
+fn pass_cubic<L: EventLog>(crossings: &mut CrossingSearch<'_, L>, step: &Step) -> bool {
     let Step { from, to, h, .. } = *step;
-    let cubic = Cubic::new(step);
+    let cubic = HermiteCubic::new(step);
     let inward = from.w > 0.0 || (from.w == 0.0 && to.u > from.u);
     if !opposite(from.w, to.w) {
-        let piece = Piece {
+        let piece = MonotonePiece {
             from: from.u,
             to: to.u,
             inward,
@@ -186,13 +189,13 @@ fn pass_cubic<L: Log>(crossings: &mut Crossings<'_, L>, step: &Step) -> bool {
     });
     let turning = from.u + cubic.rise(turn);
     crossings.turn(turning, step.angle + turn);
-    let towards = Piece {
+    let towards = MonotonePiece {
         from: from.u,
         to: turning,
         inward,
         turns: true,
     };
-    let back = Piece {
+    let back = MonotonePiece {
         from: turning,
         to: to.u,
         inward: !inward,
@@ -203,14 +206,14 @@ fn pass_cubic<L: Log>(crossings: &mut Crossings<'_, L>, step: &Step) -> bool {
 }
 
 /// `u − u_from = c₁x + c₂x² + c₃x³` at angle x from a step's start, with the step's u and du/dφ at both ends.
-struct Cubic {
+struct HermiteCubic {
     from: f64,
     c1: f64,
     c2: f64,
     c3: f64,
 }
 
-impl Cubic {
+impl HermiteCubic {
     fn new(step: &Step) -> Self {
         let Step { from, to, h, .. } = *step;
         let mean = (to.u - from.u) / h;
@@ -234,11 +237,11 @@ impl Cubic {
         2.0 * self.c2 + x * 6.0 * self.c3
     }
 
-    /// Reports what is met between the angles `first` and `last` from the step's start, itself at `angle`.
-    fn pass<L: Log>(
+    /// Reports the events between the angles `first` and `last` from the step's start, which is at `angle`.
+    fn pass<L: EventLog>(
         &self,
-        crossings: &mut Crossings<'_, L>,
-        piece: Piece,
+        crossings: &mut CrossingSearch<'_, L>,
+        piece: MonotonePiece,
         (first, last): (f64, f64),
         angle: f64,
     ) -> bool {

@@ -1,130 +1,28 @@
 //! Direct integration: the orbit equation itself, stepped in the swept angle φ.
 //!
 //! The equation is `du/dφ = w`, `dw/dφ = 3/2 u² − u` (Chandrasekhar, *The Mathematical Theory of Black Holes*, §20).
-//! [`Adaptive`] takes the steps an error estimate asks for and is accurate to a tolerance; [`FixedStep`] takes steps
-//! of one length, the plain first attempt that everything faster is measured against. Neither uses the first
-//! integral or an elliptic integral, so both are independent checks of the methods that do.
+//! [`Adaptive`] takes steps as long as an error estimate allows, to a tolerance. [`FixedStep`] takes steps of one
+//! length: the plain first attempt that everything faster is compared with. Neither uses the first integral or an
+//! elliptic integral, so that both are independent checks of the methods that do.
 //!
-//! Both walk the same way. A step is cut at the turning point inside it, if there is one (no ray has more than one
-//! in all its flight), and each monotone piece is searched for the watched radii it passes, in order.
+//! Both cut a step at the turning point within it, if there is one (no ray has more than one in its whole flight), and
+//! search each monotone piece for the watched radii that it passes, in order.
 
 mod adaptive;
 mod crossings;
 mod disk;
 mod dop853;
 mod fixed;
+mod flight;
 mod root;
 
 pub use adaptive::Adaptive;
 pub use fixed::{FixedStep, Scheme};
 
-use super::{Event, EventKind, OrbitError, Ray, TurningPoint, WatchedRadius, inverse_radii};
-use crossings::{Crossings, Log, Piece};
-
-/// Steps after which a stepped solution gives up, where nothing else is asked for. A ray one unit in the last place
-/// from critical winds some 40 radians, which even steps of 0.001 cover in less than half of this.
-const DEFAULT_MAX_STEPS: u64 = 100_000;
-
-/// |du/dφ| from which a ray's path is straight in (φ, u) to the last bit. Between the horizon and infinity
-/// `w² = e² − u²(1 − u)` varies by no more than 4/27, hence w by a share of 2/(27w²) at most: less than 2⁻⁵⁵ here.
-const STRAIGHT: f64 = (1_u64 << 26) as f64;
-
-/// A point of the phase plane.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct State {
-    /// Inverse radius.
-    u: f64,
-    /// du/dφ.
-    w: f64,
-}
-
-/// `d²u/dφ² = 3/2 u² − u`, as `3/2 u (u − 2/3)` with 2/3 in two parts, the second being what the first is rounded by:
-/// correct to a few units in its own last place on all sides of the photon sphere, so that this repels even the ray
-/// that starts at its rounded place.
-#[inline]
-fn acceleration(u: f64) -> f64 {
-    const HIGH: f64 = 2.0 / 3.0;
-    const LOW: f64 = f64::EPSILON / 6.0;
-    1.5 * u * ((u - HIGH) - LOW)
-}
-
-/// Whether a and b have opposite signs, zero having none.
-fn opposite(a: f64, b: f64) -> bool {
-    (a < 0.0 && b > 0.0) || (a > 0.0 && b < 0.0)
-}
-
-/// What is left of a ray's flight when it is about to be stepped.
-enum Departure<'a, L> {
-    /// The path is straight: nothing is left to do.
-    Done(Crossings<'a, L>),
-    /// The state to step from, and the crossings to look for.
-    Bound(State, Crossings<'a, L>),
-}
-
-/// Prepares a flight: the rays that are straight lines in (φ, u), among them those with infinite du/dφ, whose angles
-/// are all 0, are answered here.
-fn depart<L: Log>(ray: Ray, watched: &[WatchedRadius], log: L) -> Departure<'_, L> {
-    let start = State {
-        u: ray.u(),
-        w: ray.dudphi(),
-    };
-    if start.w.abs() >= STRAIGHT {
-        let inward = start.w > 0.0;
-        let mut crossings = Crossings::new(watched, log, start.u);
-        let piece = Piece {
-            from: start.u,
-            to: if inward { 1.0 } else { 0.0 },
-            inward,
-            turns: false,
-        };
-        crossings.pass(piece, |u| (u - start.u).abs() / start.w.abs());
-        return Departure::Done(crossings);
-    }
-    Departure::Bound(start, Crossings::new(watched, log, start.u))
-}
-
-/// A method that steps along a flight until its end, or until nothing more is wanted of it.
-trait Flight {
-    /// Flies past `watched` (by ascending u), noting in `log` what happens.
-    ///
-    /// # Errors
-    /// [`OrbitError::StepLimit`]
-    fn fly<'a, L: Log>(
-        &self,
-        ray: Ray,
-        watched: &'a [WatchedRadius],
-        log: L,
-    ) -> Result<Crossings<'a, L>, OrbitError>;
-
-    /// [`Orbits::follow`](super::Orbits::follow)
-    fn all_events(&self, ray: Ray, radii: &[f64]) -> Result<Vec<Event>, OrbitError> {
-        let watched = inverse_radii(radii)?;
-        // Every radius is passed twice at most.
-        let log = Vec::with_capacity(2 * watched.len() + 1);
-        self.fly(ray, &watched, log).map(Crossings::into_log)
-    }
-
-    /// [`Orbits::first_crossing`](super::Orbits::first_crossing)
-    fn first_event(&self, ray: Ray, radius: f64) -> Result<Option<f64>, OrbitError> {
-        let watched = [WatchedRadius::new(radius)?];
-        let first = self.fly(ray, &watched, None)?.into_log();
-        Ok(first.and_then(|event: Event| match event.kind {
-            EventKind::Inbound | EventKind::Outbound => Some(event.angle),
-            EventKind::End(_) => None,
-        }))
-    }
-
-    /// [`Orbits::turning_point`](super::Orbits::turning_point)
-    fn turn(&self, ray: Ray) -> Result<Option<TurningPoint>, OrbitError> {
-        let flight = self.fly(ray, &[], None)?;
-        Ok(flight.turning_point())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::orbit::{EventKind, Fate, Orbits};
+    use crate::orbit::{EventKind, Fate, OrbitError, Orbits, Ray};
 
     fn all_methods() -> Vec<(&'static str, Box<dyn Orbits>)> {
         vec![

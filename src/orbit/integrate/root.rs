@@ -1,17 +1,17 @@
-//! The zero of a function between two places where its signs differ.
+//! Finds the zero of a function between two places where its signs differ.
 
-/// Newton's method stops after a step shorter than this share of the place it leads to. Its error is then that step
-/// squared times |f″/2f′|, which for a radius that a ray grazes at an angle d from its turning point is 1/2d: below
-/// 1e-16 down to d = 1e-6, and nearer than that the equation's own rounding is the larger error.
+/// Newton's method stops after a step shorter than this share of the place to which it leads. Its error is then that
+/// step squared times |f″/2f′|. For a radius that a ray grazes at an angle d from its turning point that factor is
+/// 1/2d, so that the error is below 1e-16 down to d = 1e-6; nearer than that the equation's own rounding is larger.
 const LAST_STEP: f64 = 1e-11;
 
-/// Enough for bisection alone to come from any bracket down to neighbouring numbers.
+/// The most iterations: bisection alone comes from any bracket down to neighbouring numbers in fewer.
 const MAX_ITERATIONS: u32 = 128;
 
-/// The x between `low` and `high` where f(x) = 0; `f` returns its value and its derivative, and is negative at `low`
-/// and positive at `high` where `rising`, the other way round where not.
+/// Returns the x between `low` and `high` where f(x) = 0. `f` returns its value and its derivative. Where `rising`, it
+/// is negative at `low` and positive at `high`; otherwise the other way round.
 ///
-/// Newton's method, with a bisection in place of every step that leaves the bracket or is not half as long as the
+/// Uses Newton's method, with a bisection in place of each step that leaves the bracket or is not half as long as the
 /// step before it, as in `rtsafe` of Press et al., *Numerical Recipes*, §9.4.
 pub(super) fn bracketed(
     low: f64,
@@ -20,8 +20,8 @@ pub(super) fn bracketed(
     mut f: impl FnMut(f64) -> (f64, f64),
 ) -> f64 {
     let (mut low, mut high) = (low, high);
-    // From the low end, where a zero close to it keeps its relative precision; the first step may be any in the
-    // bracket.
+    // Starts at the low end, so that a zero close to it keeps its relative precision. The first step may be any within
+    // the bracket.
     let mut x = low;
     let mut previous = 4.0 * (high - low);
     for _ in 0..MAX_ITERATIONS {
