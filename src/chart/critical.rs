@@ -17,8 +17,8 @@
 use rayon::prelude::*;
 
 use super::exact_self_check::angle_in_two_parts;
-use super::measurement::{Effort, Measurement, Panel, Quantiles};
-use super::methods::{Contestant, Method, Tables};
+use super::measurement::{ChartEffort, Measurement, Panel, Quantiles};
+use super::methods::{ComparedMethod, Contestant, Tables};
 use crate::orbit::exact::Exact;
 use crate::orbit::integrate::Scheme;
 use crate::orbit::invariants::{CRITICAL_E2, Family, Orbit, critical_slope, three_u_minus_two};
@@ -69,10 +69,10 @@ struct RaysAtDistance {
 
 impl CriticalPanel {
     /// Measures all methods. `progress` receives the share that is done, from 0 to 1.
-    pub fn measure(tables: &Tables, effort: Effort, progress: &dyn Fn(f64)) -> Self {
+    pub fn measure(tables: &Tables, effort: ChartEffort, progress: &dyn Fn(f64)) -> Self {
         let steps = match effort {
-            Effort::Quick => 1,
-            Effort::Full => 2,
+            ChartEffort::Quick => 1,
+            ChartEffort::Full => 2,
         };
         let exponents = (0..=CLOSEST_DECADE * steps).map(|k| -f64::from(k) / f64::from(steps));
         let distances: Vec<_> = exponents
@@ -126,7 +126,7 @@ impl RaysAtDistance {
     /// Computes the errors of one method.
     fn measure(&self, contestant: &Contestant<'_>) -> CriticalPoint {
         let errors = self.rays.iter().filter_map(|(ray, orbit)| {
-            let angle = if contestant.method == Method::Exact {
+            let angle = if contestant.method == ComparedMethod::Exact {
                 angle_in_two_parts(orbit, orbit.end(), orbit.family != Family::Monotone)
             } else {
                 let events = contestant.orbits.follow(*ray, &[]).ok()?;
@@ -229,7 +229,7 @@ mod tests {
         };
         let ratio = at(1e-10) / at(1e-8);
         assert!((ratio - 100.0).abs() < 1.0, "{ratio}");
-        // A captured ray's angle is −ln Δ plus a smooth part, `dΔ = 2 w² d ln w`, and w² is near 4/27 far from the hole.
+        // A captured ray's angle is −ln Δ plus a smooth part, `dΔ = 2 w² d ln w`, and far out w² is near 4/27.
         let expected = 2.0 * f64::EPSILON * 1e8;
         assert!((at(1e-8) / expected - 1.0).abs() < 0.1, "{:e}", at(1e-8));
     }

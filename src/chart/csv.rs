@@ -17,7 +17,9 @@ const HEADER: &str =
 pub fn write_csv(chart: &ChartData, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
-        "# darkness {} on {}; ratio_to_rk4 = time of RK4 in steps of h={} (whose error_p99 in panel rays is 1e-6) / time of this method, taken in each of the interleaved rounds, their median: above 1 is faster than RK4; errors in radians (panel scene: in pixels, times per pixel)",
+        "# darkness {} on {}; ratio_to_rk4 = time of RK4 in steps of h={} (whose error_p99 in panel rays is 1e-6) / \
+         time of this method, the median over interleaved rounds: above 1 is faster than RK4; errors in radians \
+         (panel scene: in pixels, times per pixel)",
         env!("CARGO_PKG_VERSION"),
         machine(),
         chart.rays.baseline_step,

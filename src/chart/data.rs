@@ -1,7 +1,7 @@
 //! Everything the chart shows, measured in one run.
 
 use super::critical::CriticalPanel;
-use super::measurement::{ChartError, ChartProgress, Effort, Measurement};
+use super::measurement::{ChartEffort, ChartError, ChartProgress, Measurement};
 use super::methods::Tables;
 use super::rays::RayPanel;
 use super::scene::ScenePanel;
@@ -26,7 +26,7 @@ impl ChartData {
     pub fn measure(
         scene: &Scene,
         name: String,
-        effort: Effort,
+        effort: ChartEffort,
         progress: &ChartProgress<'_>,
     ) -> Result<Self, ChartError> {
         progress("generating tables", 0.0);

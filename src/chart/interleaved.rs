@@ -20,8 +20,8 @@ pub struct Times {
     pub sum: f64,
 }
 
-/// Runs the contenders in turn on this thread, in one round to warm up and `rounds` that count. Calls `round_done` after
-/// each round.
+/// Runs the contenders in turn on this thread, in one round to warm up and `rounds` that count. Calls `round_done`
+/// after each round.
 ///
 /// Within its turn a contender whose run is shorter than `least` is repeated until it takes that long, so that the
 /// caches hold its own data. After `most` no further round starts, except the first that counts.

@@ -2,13 +2,13 @@
 
 use core::fmt;
 
-use super::methods::Method;
+use super::methods::ComparedMethod;
 use crate::render::RenderError;
 use crate::table::SpecError;
 
 /// How thoroughly to measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Effort {
+pub enum ChartEffort {
     /// Takes seconds: fewer rays, settings and repetitions.
     Quick,
     /// Takes minutes.
@@ -49,7 +49,7 @@ pub struct Measurement {
     /// The panel that the point belongs to.
     pub panel: Panel,
     /// The method measured.
-    pub method: Method,
+    pub method: ComparedMethod,
     /// The method's settings: `name=value`, separated by spaces.
     pub setting: String,
     /// The cost, if it was measured.

@@ -25,4 +25,6 @@ pub mod scene;
 pub use csv::write_csv;
 pub use data::ChartData;
 pub use machine::machine;
-pub use measurement::{ChartError, ChartProgress, Effort, Measurement, Panel, Quantiles, Time};
+pub use measurement::{
+    ChartEffort, ChartError, ChartProgress, Measurement, Panel, Quantiles, Time,
+};

@@ -17,8 +17,8 @@ use rayon::prelude::*;
 
 use super::exact_self_check::angle_in_two_parts;
 use super::interleaved::{Contender, rounds};
-use super::measurement::{Effort, Measurement, Panel, Quantiles, Time};
-use super::methods::{Contestant, Method, Question, Tables};
+use super::measurement::{ChartEffort, Measurement, Panel, Quantiles, Time};
+use super::methods::{ComparedMethod, Contestant, Question, Tables};
 use crate::orbit::exact::Exact;
 use crate::orbit::integrate::Scheme;
 use crate::orbit::invariants::Orbit;
@@ -49,10 +49,10 @@ pub struct RayPanel {
 
 impl RayPanel {
     /// Measures all methods. `progress` receives the share that is done, from 0 to 1.
-    pub fn measure(tables: &Tables, effort: Effort, progress: &dyn Fn(f64)) -> Self {
+    pub fn measure(tables: &Tables, effort: ChartEffort, progress: &dyn Fn(f64)) -> Self {
         let (count, repetitions) = match effort {
-            Effort::Quick => (1024, 11),
-            Effort::Full => (4096, 15),
+            ChartEffort::Quick => (1024, 11),
+            ChartEffort::Full => (4096, 15),
         };
         let questions = questions(count);
         let truths: Vec<f64> = questions.par_iter().map(truth).collect();
@@ -104,14 +104,14 @@ impl RayPanel {
 }
 
 /// Lists every method at every setting, the baseline first.
-fn contestants(tables: &Tables, effort: Effort, baseline_step: f64) -> Vec<Contestant<'_>> {
+fn contestants(tables: &Tables, effort: ChartEffort, baseline_step: f64) -> Vec<Contestant<'_>> {
     let (euler, rk4, adaptive): (&[f64], &[f64], &[f64]) = match effort {
-        Effort::Quick => (
+        ChartEffort::Quick => (
             &[0.1, 0.01, 1e-3],
             &[0.5, 0.2, 0.05, 0.01],
             &[1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13],
         ),
-        Effort::Full => (
+        ChartEffort::Full => (
             &[0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4],
             &[0.5, 0.3, 0.2, 0.1, 0.05, 0.02, 0.01, 5e-3, 2e-3],
             &[
@@ -181,7 +181,7 @@ fn errors(contestant: &Contestant<'_>, questions: &[Question], truths: &[f64]) -
         .par_iter()
         .zip(truths)
         .filter_map(|(question, truth)| {
-            let angle = if contestant.method == Method::Exact {
+            let angle = if contestant.method == ComparedMethod::Exact {
                 truth_in_two_parts(question)?
             } else {
                 let orbits = &contestant.orbits;

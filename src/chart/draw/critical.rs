@@ -3,7 +3,7 @@
 use super::plot::{DrawError, ErrorAxis, PageArea, PlotLine, decades, heading, legend, plot};
 use super::style::{GREY, SeriesStyle, px};
 use crate::chart::critical::{CriticalPanel, CriticalPoint};
-use crate::chart::methods::Method;
+use crate::chart::methods::ComparedMethod;
 use crate::orbit::Fate;
 
 /// Returns the style and the label of a point's method and setting.
@@ -12,8 +12,10 @@ fn style(point: &CriticalPoint) -> (SeriesStyle, String) {
     let (mut style, label) = SeriesStyle::of(row.method);
     let (knob, _) = row.setting.split_once(' ').unwrap_or_default();
     let label = match row.method {
-        Method::Adaptive => "adaptive 10⁻⁹".to_owned(),
-        Method::Euler | Method::Rk4 => format!("{label} {}", knob.replace('=', " = ")),
+        ComparedMethod::Adaptive => "adaptive 10⁻⁹".to_owned(),
+        ComparedMethod::Euler | ComparedMethod::Rk4 => {
+            format!("{label} {}", knob.replace('=', " = "))
+        }
         _ => label.to_owned(),
     };
     // Dashes mark the coarser of the two settings of RK4.
@@ -23,8 +25,8 @@ fn style(point: &CriticalPoint) -> (SeriesStyle, String) {
     (style, label)
 }
 
-/// Returns a line for each method and setting, from the points of rays with this fate. The order of the lines and of the
-/// rows for failures is the same for both fates.
+/// Returns a line for each method and setting, from the points of rays with this fate. The order of the lines and of
+/// the rows for failures is the same for both fates.
 fn lines(critical: &CriticalPanel, fate: Fate) -> Vec<PlotLine> {
     let mut lines: Vec<PlotLine> = Vec::new();
     let mut failing = Vec::new();
@@ -56,7 +58,8 @@ fn lines(critical: &CriticalPanel, fate: Fate) -> Vec<PlotLine> {
 
 /// Draws the panel.
 pub(super) fn draw(area: &PageArea<'_>, critical: &CriticalPanel) -> Result<(), DrawError> {
-    let caption = "Fate and total angle of rays towards the photon sphere, from r = 1000, 30, 6 and 2, and from 1.2 outwards:\n\
+    let caption = "\
+        Fate and total angle of rays towards the photon sphere, from r = 1000, 30, 6 and 2, and from 1.2 outwards:\n\
         the largest error among the rays of one distance. Cross at the top: wrong fates or missing answers.\n\
         Grey line: the effect of rounding a ray's own slope to a double; the exact method and the tables answer\n\
         for exactly the numbers that they are given, and may lie below it.";

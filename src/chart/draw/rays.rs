@@ -9,7 +9,7 @@ use super::plot::{
     legend, plot,
 };
 use super::style::{GREY, LIGHT, SeriesStyle, font, px};
-use crate::chart::methods::Method;
+use crate::chart::methods::ComparedMethod;
 use crate::chart::number_format::{axis_label, grouped};
 use crate::chart::rays::RayPanel;
 
@@ -25,7 +25,7 @@ pub(super) fn draw(area: &PageArea<'_>, rays: &RayPanel) -> Result<(), DrawError
     );
     let (area, legend_area) = heading(area, "Rays: what one swept angle costs", &caption)?;
     let (mut lines, mut candidates) = (Vec::new(), Vec::new());
-    for method in Method::ALL {
+    for method in ComparedMethod::ALL {
         let rows = rays.points.iter().filter(|row| row.method == method);
         let rows = rows.filter_map(|row| Some((row.time?.nanoseconds, row.error?, row.failures)));
         let mut rows: Vec<_> = rows.collect();

@@ -6,7 +6,7 @@ use plotters::style::BLACK;
 
 use super::plot::{DrawError, ErrorAxis, PageArea, PlotLine, around, heading, legend, plot};
 use super::style::{SeriesStyle, px};
-use crate::chart::methods::Method;
+use crate::chart::methods::ComparedMethod;
 use crate::chart::number_format::grouped;
 use crate::chart::scene::{FramePoint, ScenePanel};
 
@@ -86,9 +86,9 @@ fn lines(
         (SeriesStyle::line(BLACK, 2), "allowed"),
         allowed,
     )];
-    for method in Method::ALL
+    for method in ComparedMethod::ALL
         .into_iter()
-        .filter(|method| *method != Method::TableScaled)
+        .filter(|method| *method != ComparedMethod::TableScaled)
     {
         let mut line = PlotLine::new(SeriesStyle::of(method), Vec::new());
         for point in points.iter().filter(|point| point.method == method) {

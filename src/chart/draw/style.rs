@@ -5,7 +5,7 @@
 
 use plotters::prelude::*;
 
-use crate::chart::methods::Method;
+use crate::chart::methods::ComparedMethod;
 
 pub(super) const GREY: RGBColor = RGBColor(110, 110, 110);
 pub(super) const LIGHT: RGBColor = RGBColor(224, 224, 224);
@@ -60,17 +60,19 @@ const SOLID: (u32, u32) = (100_000, 1);
 
 impl SeriesStyle {
     /// Returns the style and the label of a method.
-    pub(super) fn of(method: Method) -> (Self, &'static str) {
+    pub(super) fn of(method: ComparedMethod) -> (Self, &'static str) {
         let up = (3, 10.0, 0.5, 0.0);
         let (colour, marker, dash, label) = match method {
-            Method::Euler => (ORANGE, (12, 7.0, 0.97, 0.0), SOLID, "Euler"),
-            Method::Rk4 => (VERMILION, (4, 9.0, 0.71, 45.0), SOLID, "RK4"),
-            Method::Adaptive => (PURPLE, (4, 10.0, 0.65, 0.0), SOLID, "adaptive (DOP853)"),
-            Method::TableScaled => (SKY, (3, 10.0, 0.5, 180.0), (16, 6), "tables of other sizes"),
-            Method::TableDraft => (BLUE, up, (14, 5), "table draft"),
-            Method::TableStandard => (BLUE, up, SOLID, "table standard"),
-            Method::TableFine => (BLUE, up, (4, 4), "table fine"),
-            Method::Exact => (BLACK, (5, 11.0, 0.4, 0.0), SOLID, "exact"),
+            ComparedMethod::Euler => (ORANGE, (12, 7.0, 0.97, 0.0), SOLID, "Euler"),
+            ComparedMethod::Rk4 => (VERMILION, (4, 9.0, 0.71, 45.0), SOLID, "RK4"),
+            ComparedMethod::Adaptive => (PURPLE, (4, 10.0, 0.65, 0.0), SOLID, "adaptive (DOP853)"),
+            ComparedMethod::TableScaled => {
+                (SKY, (3, 10.0, 0.5, 180.0), (16, 6), "tables of other sizes")
+            }
+            ComparedMethod::TableDraft => (BLUE, up, (14, 5), "table draft"),
+            ComparedMethod::TableStandard => (BLUE, up, SOLID, "table standard"),
+            ComparedMethod::TableFine => (BLUE, up, (4, 4), "table fine"),
+            ComparedMethod::Exact => (BLACK, (5, 11.0, 0.4, 0.0), SOLID, "exact"),
         };
         let mut style = Self::line(colour, 3);
         (style.dash, style.marker) = (dash, marker);

@@ -132,8 +132,8 @@ impl ExactEdges {
         })
     }
 
-    /// Finds the height at which the method's answer changes, to a thousandth of its distance from the exact height. The
-    /// search steps outwards from the exact height until the answer differs, and then bisects.
+    /// Finds the height at which the method's answer changes, to a thousandth of its distance from the exact height.
+    /// The search steps outwards from the exact height until the answer differs, and then bisects.
     fn flip(&self, orbits: &dyn Orbits, sample: &EdgeSample) -> Option<f64> {
         let exact = sample.height;
         let is_inside = self.is_inside(orbits, sample, exact)?;

@@ -1,7 +1,7 @@
 //! The methods that render a frame, at every setting that is measured.
 
-use super::super::measurement::Effort;
-use super::super::methods::{Method, Stepper, Tables};
+use super::super::measurement::ChartEffort;
+use super::super::methods::{ComparedMethod, Stepper, Tables};
 use crate::isoradial::{Isoradials, Sight};
 use crate::orbit::exact::Exact;
 use crate::orbit::path::SweptAngles;
@@ -38,14 +38,14 @@ impl<T: SweptAngles> BuildCurves for T {
 
 /// A method whose swept angles curves are built from, and the size of its table in bytes, if it has one.
 pub(super) struct CurveSource<'a> {
-    pub(super) method: Method,
+    pub(super) method: ComparedMethod,
     pub(super) table_bytes: Option<usize>,
     pub(super) angles: Box<dyn BuildCurves + Send + 'a>,
 }
 
 /// A method at one setting.
 pub(super) struct FrameSetting<'a> {
-    pub(super) method: Method,
+    pub(super) method: ComparedMethod,
     pub(super) renders: FrameMethod<'a>,
     pub(super) setting: String,
     pub(super) table_bytes: Option<usize>,
@@ -62,7 +62,7 @@ pub(super) fn sources(tables: &Tables) -> Vec<CurveSource<'_>> {
         });
     }
     all.push(CurveSource {
-        method: Method::Exact,
+        method: ComparedMethod::Exact,
         table_bytes: None,
         angles: Box::new(Exact),
     });
@@ -75,11 +75,11 @@ pub(super) fn settings<'a>(
     view: &View,
     sources: &'a [CurveSource<'_>],
     baseline_step: f64,
-    effort: Effort,
+    effort: ChartEffort,
 ) -> Vec<FrameSetting<'a>> {
     let mut steppers = vec![Stepper::rk4(baseline_step)];
     steppers.extend(match effort {
-        Effort::Quick => vec![
+        ChartEffort::Quick => vec![
             Stepper::euler(0.01),
             Stepper::euler(1e-3),
             Stepper::rk4(0.2),
@@ -87,7 +87,7 @@ pub(super) fn settings<'a>(
             Stepper::adaptive(1e-3),
             Stepper::adaptive(1e-9),
         ],
-        Effort::Full => vec![
+        ChartEffort::Full => vec![
             Stepper::euler(0.1),
             Stepper::euler(0.03),
             Stepper::euler(0.01),

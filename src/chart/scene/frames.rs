@@ -70,8 +70,8 @@ impl ExactPixels {
         (wrong.sum(), self.pixels())
     }
 
-    /// Counts the wrong pixels of a method that steps each ray, and the pixels compared: evenly spread rows with at most
-    /// `budget` pixels in total, but at least one row.
+    /// Counts the wrong pixels of a method that steps each ray, and the pixels compared: evenly spread rows with at
+    /// most `budget` pixels in total, but at least one row.
     pub(super) fn wrong_of(
         &self,
         scene: &Scene,

@@ -13,8 +13,8 @@ mod frames;
 use core::time::Duration;
 
 use super::interleaved::{Contender, rounds};
-use super::measurement::{ChartError, Effort, Measurement, Panel, Quantiles, Time};
-use super::methods::{Method, Tables};
+use super::measurement::{ChartEffort, ChartError, Measurement, Panel, Quantiles, Time};
+use super::methods::{ComparedMethod, Tables};
 use super::number_format::{grouped, two_digits};
 use crate::scene::{Scene, View};
 use edges::{Displacements, ExactEdges, ORDERS};
@@ -42,7 +42,7 @@ pub struct ScenePanel {
 #[derive(Debug)]
 pub struct FramePoint {
     /// The method.
-    pub method: Method,
+    pub method: ComparedMethod,
     /// The time of a frame, in milliseconds.
     pub milliseconds: f64,
     /// The number of the curves' nodes, for methods that build curves.
@@ -88,9 +88,9 @@ struct SceneEffort {
 }
 
 impl SceneEffort {
-    fn of(effort: Effort) -> Self {
+    fn of(effort: ChartEffort) -> Self {
         match effort {
-            Effort::Quick => Self {
+            ChartEffort::Quick => Self {
                 repetitions: 5,
                 time: Duration::from_secs(3),
                 sampled_pixels: 1024,
@@ -98,7 +98,7 @@ impl SceneEffort {
                 places: 129,
                 seconds: 0.15,
             },
-            Effort::Full => Self {
+            ChartEffort::Full => Self {
                 repetitions: 21,
                 time: Duration::from_secs(40),
                 sampled_pixels: 8192,
@@ -111,8 +111,8 @@ impl SceneEffort {
 }
 
 impl ScenePanel {
-    /// Measures the frame of `scene`. `baseline_step` is the step of RK4 in `ratio_to_rk4`. `progress` receives the share
-    /// that is done, from 0 to 1.
+    /// Measures the frame of `scene`. `baseline_step` is the step of RK4 in `ratio_to_rk4`. `progress` receives the
+    /// share that is done, from 0 to 1.
     ///
     /// # Errors
     /// [`ChartError`] if a frame does not fit into memory, or a thread cannot be started.
@@ -121,7 +121,7 @@ impl ScenePanel {
         name: String,
         tables: &Tables,
         baseline_step: f64,
-        effort: Effort,
+        effort: ChartEffort,
         progress: &(dyn Fn(f64) + Sync),
     ) -> Result<Self, ChartError> {
         let bounds = SceneEffort::of(effort);
@@ -152,15 +152,17 @@ impl ScenePanel {
         })
     }
 
-    /// Returns the measurement with the smallest table, and then the fewest nodes, that displaces no edge by more than the
-    /// scene's tolerance.
+    /// Returns the measurement with the smallest table, and then the fewest nodes, that displaces no edge by more than
+    /// the scene's tolerance.
     pub fn least(&self) -> Option<&FramePoint> {
         self.points
             .iter()
             .filter(|point| {
                 matches!(
                     point.method,
-                    Method::TableDraft | Method::TableStandard | Method::TableFine
+                    ComparedMethod::TableDraft
+                        | ComparedMethod::TableStandard
+                        | ComparedMethod::TableFine
                 ) && point.displacement() <= self.tolerance
             })
             .min_by_key(|point| (point.table_bytes, point.nodes))
@@ -179,12 +181,13 @@ impl ScenePanel {
             );
         };
         let table = match point.method {
-            Method::TableDraft => "draft",
-            Method::TableFine => "fine",
+            ComparedMethod::TableDraft => "draft",
+            ComparedMethod::TableFine => "fine",
             _ => "standard",
         };
         format!(
-            "{name}: the {table} table ({} bytes) and {} curve nodes suffice: no edge is displaced by more than {} pixels (allowed: {asked:?})",
+            "{name}: the {table} table ({} bytes) and {} curve nodes suffice: no edge is displaced by more than \
+             {} pixels (allowed: {asked:?})",
             grouped(point.table_bytes.unwrap_or_default()),
             grouped(point.nodes.unwrap_or_default()),
             two_digits(point.displacement()),
