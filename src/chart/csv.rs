@@ -18,7 +18,8 @@ pub fn write_csv(chart: &ChartData, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
         "# darkness {} on {}; ratio_to_rk4 = time of RK4 in steps of h={} (whose error_p99 in panel rays is 1e-6) / \
-         time of this method, the median over interleaved rounds: above 1 is faster than RK4; errors in radians \
+         time of this method, the median over interleaved rounds: above 1 is faster than RK4; \
+         ns_per_ray = RK4's median time / ratio_to_rk4; errors in radians \
          (panel scene: in pixels, times per pixel)",
         env!("CARGO_PKG_VERSION"),
         machine(),

@@ -65,11 +65,23 @@ pub struct Measurement {
 /// The cost of an answer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Time {
-    /// Nanoseconds per ray; in panel [`Scene`](Panel::Scene), per pixel.
+    /// Nanoseconds per ray; in panel [`Scene`](Panel::Scene), per pixel. This is RK4's median time divided by the ratio
+    /// below, because a drift of the machine's speed between rounds hardly changes ratios.
     pub nanoseconds: f64,
-    /// RK4's time divided by this time. RK4 takes the [step](super::rays::RayPanel::baseline_step) at which the 99th
-    /// percentile of its error is 1e-6.
+    /// The median over the rounds of RK4's time divided by this time. RK4 takes the
+    /// [step](super::rays::RayPanel::baseline_step) at which the 99th percentile of its error is 1e-6.
     pub ratio_to_rk4: f64,
+}
+
+impl Time {
+    /// Creates the cost of an answer from RK4's time in nanoseconds and the ratio of RK4's time to this one.
+    pub(super) fn new(rk4_nanoseconds: f64, ratio_to_rk4: f64) -> Self {
+        let nanoseconds = rk4_nanoseconds / ratio_to_rk4;
+        Self {
+            nanoseconds,
+            ratio_to_rk4,
+        }
+    }
 }
 
 /// Quantiles of the errors.

@@ -7,7 +7,8 @@
 //! | [`scene`] | the position of the disk's edges in a scene's frame | the time per frame |
 //!
 //! Errors are differences from the exact method. The error of the exact method itself is estimated by splitting each
-//! of its integrals in two. All times are medians of [interleaved] repetitions on one thread.
+//! of its integrals in two. All times come from median ratios over [interleaved] repetitions on one
+//! thread.
 
 pub mod critical;
 mod csv;

@@ -85,10 +85,10 @@ impl RayPanel {
                     panel: Panel::Rays,
                     method: contestant.method,
                     setting: contestant.setting.clone(),
-                    time: Some(Time {
-                        nanoseconds: times.median(i) * 1e9 / questions.len() as f64,
-                        ratio_to_rk4: times.ratio(i, 0),
-                    }),
+                    time: Some(Time::new(
+                        times.median(0) * 1e9 / questions.len() as f64,
+                        times.ratio(i, 0),
+                    )),
                     failures: (questions.len() - errors.len()) as u64,
                     count: questions.len() as u64,
                     error: Quantiles::of(errors),

@@ -44,3 +44,34 @@ pub fn svg(chart: &ChartData) -> Result<String, DrawError> {
     let shown = format!("width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
     Ok(svg.replacen(&drawn, &shown, 1))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chart::critical::CriticalPanel;
+    use crate::chart::rays::RayPanel;
+    use crate::chart::scene::ScenePanel;
+
+    #[test]
+    fn a_figure_without_measurements_is_drawn() {
+        let (points, rounding) = (Vec::new(), Vec::new());
+        let chart = ChartData {
+            rays: RayPanel {
+                points: Vec::new(),
+                baseline_step: 0.1,
+                count: 0,
+            },
+            critical: CriticalPanel { points, rounding },
+            scene: ScenePanel {
+                name: "<&>".to_owned(),
+                size: (1, 1),
+                tolerance: 1e-3,
+                places: 0,
+                compared: 0,
+                points: Vec::new(),
+            },
+        };
+        let svg = svg(&chart).unwrap();
+        assert!(svg.contains("&lt;&amp;&gt; at 1 × 1"));
+    }
+}

@@ -17,10 +17,10 @@ use crate::chart::rays::RayPanel;
 pub(super) fn draw(area: &PageArea<'_>, rays: &RayPanel) -> Result<(), DrawError> {
     let caption = format!(
         "The angle to the first crossing of one radius, for {} rays of cameras at r = 1.05 … 1000 in all\n\
-         directions and radii 3 … 30 (evenly in log r). One thread, medians. Marker: 99th percentile of the error\n\
-         against the exact method; whisker: median to largest; cross at the top: crossings were missed. Exact: one\n\
-         integral against the sum of two over the same range. Pareto front: the settings without failures than\n\
-         which no other is both faster and more accurate.",
+         directions and radii 3 … 30 (evenly in log r). One thread, times from median ratios to RK4. Marker: 99th\n\
+         percentile of the error against the exact method; whisker: median to largest; cross at the top: crossings\n\
+         were missed. Exact: one integral against the sum of two over the same range. Pareto front: the settings\n\
+         without failures than which no other is both faster and more accurate.",
         grouped(rays.count)
     );
     let (area, legend_area) = heading(area, "Rays: what one swept angle costs", &caption)?;

@@ -241,9 +241,9 @@ fn time(
     settings
         .iter()
         .enumerate()
-        .map(|(i, setting)| Time {
-            nanoseconds: times.median(i) * 1e9 / items(setting),
-            ratio_to_rk4: times.ratio(i, 0) * items(setting) / sample.len() as f64,
+        .map(|(i, setting)| {
+            let ratio = times.ratio(i, 0) * items(setting) / sample.len() as f64;
+            Time::new(times.median(0) * 1e9 / sample.len() as f64, ratio)
         })
         .collect()
 }
