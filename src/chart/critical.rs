@@ -17,8 +17,8 @@
 use rayon::prelude::*;
 
 use super::exact_self_check::angle_in_two_parts;
-use super::measurement::{ChartEffort, Measurement, Panel, Quantiles};
-use super::methods::{ComparedMethod, Contestant, Tables};
+use super::measurement::{ChartEffort, ComparedMethod, Measurement, Panel, Quantiles};
+use super::methods::{Contestant, Tables};
 use crate::orbit::exact::Exact;
 use crate::orbit::integrate::Scheme;
 use crate::orbit::invariants::{CRITICAL_E2, Family, Orbit, critical_slope, three_u_minus_two};

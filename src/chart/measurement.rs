@@ -1,8 +1,8 @@
-//! One measured point, and what measuring needs: how thoroughly to measure, how to report progress, what can go wrong.
+//! What a measured point consists of, and what measuring needs: how thoroughly to measure, how to report progress, what
+//! can go wrong.
 
 use core::fmt;
 
-use super::methods::ComparedMethod;
 use crate::render::RenderError;
 use crate::table::SpecError;
 
@@ -41,6 +41,61 @@ pub enum Panel {
     Critical,
     /// Time and error of a scene's frame.
     Scene,
+}
+
+/// A method that computes what happens to a ray.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ComparedMethod {
+    /// Euler's method with equal steps.
+    Euler,
+    /// The classical Runge–Kutta method with equal steps.
+    Rk4,
+    /// DOP853 with steps that a tolerance controls.
+    Adaptive,
+    /// Elliptic integrals.
+    Exact,
+    /// The draft table.
+    TableDraft,
+    /// The standard table.
+    TableStandard,
+    /// The fine table.
+    TableFine,
+    /// Tables with the standard table's number of nodes along each axis, times a factor.
+    TableScaled,
+}
+
+impl ComparedMethod {
+    /// All methods, in the order of the figure.
+    pub const ALL: [Self; 8] = [
+        Self::Euler,
+        Self::Rk4,
+        Self::Adaptive,
+        Self::TableScaled,
+        Self::TableDraft,
+        Self::TableStandard,
+        Self::TableFine,
+        Self::Exact,
+    ];
+
+    /// Returns the method's name in the CSV file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Euler => "euler",
+            Self::Rk4 => "rk4",
+            Self::Adaptive => "adaptive",
+            Self::Exact => "exact",
+            Self::TableDraft => "table-draft",
+            Self::TableStandard => "table-standard",
+            Self::TableFine => "table-fine",
+            Self::TableScaled => "table-scaled",
+        }
+    }
+}
+
+impl fmt::Display for ComparedMethod {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
 }
 
 /// One measured point, which is one row of the CSV file.

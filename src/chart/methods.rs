@@ -1,69 +1,12 @@
 //! The methods that are compared, and their settings.
 
-use core::fmt;
-
-use super::measurement::ChartEffort;
+use super::measurement::{ChartEffort, ComparedMethod};
 use crate::orbit::exact::Exact;
 use crate::orbit::integrate::{Adaptive, FixedStep, Scheme};
 use crate::orbit::{Orbits, Ray};
 use crate::render::pixelwise;
 use crate::scene::{Scene, View};
 use crate::table::{Spec, SpecError, Table};
-
-/// A method that computes what happens to a ray.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum ComparedMethod {
-    /// Euler's method with equal steps.
-    Euler,
-    /// The classical Runge–Kutta method with equal steps.
-    Rk4,
-    /// DOP853 with steps that a tolerance controls.
-    Adaptive,
-    /// Elliptic integrals.
-    Exact,
-    /// The draft table.
-    TableDraft,
-    /// The standard table.
-    TableStandard,
-    /// The fine table.
-    TableFine,
-    /// Tables with the standard table's number of nodes along each axis, times a factor.
-    TableScaled,
-}
-
-impl ComparedMethod {
-    /// All methods, in the order of the figure.
-    pub const ALL: [Self; 8] = [
-        Self::Euler,
-        Self::Rk4,
-        Self::Adaptive,
-        Self::TableScaled,
-        Self::TableDraft,
-        Self::TableStandard,
-        Self::TableFine,
-        Self::Exact,
-    ];
-
-    /// Returns the method's name in the CSV file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Euler => "euler",
-            Self::Rk4 => "rk4",
-            Self::Adaptive => "adaptive",
-            Self::Exact => "exact",
-            Self::TableDraft => "table-draft",
-            Self::TableStandard => "table-standard",
-            Self::TableFine => "table-fine",
-            Self::TableScaled => "table-scaled",
-        }
-    }
-}
-
-impl fmt::Display for ComparedMethod {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
 
 /// A ray and a radius. The answer is the angle swept to the ray's first crossing of the radius.
 #[derive(Debug, Clone, Copy, PartialEq)]

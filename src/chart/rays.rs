@@ -17,8 +17,8 @@ use rayon::prelude::*;
 
 use super::exact_self_check::angle_in_two_parts;
 use super::interleaved::{Contender, rounds};
-use super::measurement::{ChartEffort, Measurement, Panel, Quantiles, Time};
-use super::methods::{ComparedMethod, Contestant, Question, Tables};
+use super::measurement::{ChartEffort, ComparedMethod, Measurement, Panel, Quantiles, Time};
+use super::methods::{Contestant, Question, Tables};
 use crate::orbit::exact::Exact;
 use crate::orbit::integrate::Scheme;
 use crate::orbit::invariants::Orbit;

@@ -3,7 +3,7 @@
 use super::plot::{DrawError, ErrorAxis, PageArea, PlotLine, decades, heading, legend, plot};
 use super::style::{GREY, SeriesStyle, px};
 use crate::chart::critical::{CriticalPanel, CriticalPoint};
-use crate::chart::methods::ComparedMethod;
+use crate::chart::measurement::ComparedMethod;
 use crate::orbit::Fate;
 
 /// Returns the style and the label of a point's method and setting.

@@ -9,7 +9,7 @@ use super::plot::{
     legend, plot,
 };
 use super::style::{GREY, LIGHT, SeriesStyle, font, px};
-use crate::chart::methods::ComparedMethod;
+use crate::chart::measurement::ComparedMethod;
 use crate::chart::number_format::{axis_label, grouped};
 use crate::chart::rays::RayPanel;
 

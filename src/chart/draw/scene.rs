@@ -6,7 +6,7 @@ use plotters::style::BLACK;
 
 use super::plot::{DrawError, ErrorAxis, PageArea, PlotLine, around, heading, legend, plot};
 use super::style::{SeriesStyle, px};
-use crate::chart::methods::ComparedMethod;
+use crate::chart::measurement::ComparedMethod;
 use crate::chart::number_format::grouped;
 use crate::chart::scene::{FramePoint, ScenePanel};
 

@@ -5,7 +5,7 @@
 
 use plotters::prelude::*;
 
-use crate::chart::methods::ComparedMethod;
+use crate::chart::measurement::ComparedMethod;
 
 pub(super) const GREY: RGBColor = RGBColor(110, 110, 110);
 pub(super) const LIGHT: RGBColor = RGBColor(224, 224, 224);

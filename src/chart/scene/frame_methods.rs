@@ -1,7 +1,7 @@
 //! The methods that render a frame, at every setting that is measured.
 
-use super::super::measurement::ChartEffort;
-use super::super::methods::{ComparedMethod, Stepper, Tables};
+use super::super::measurement::{ChartEffort, ComparedMethod};
+use super::super::methods::{Stepper, Tables};
 use crate::isoradial::{Isoradials, Sight};
 use crate::orbit::exact::Exact;
 use crate::orbit::path::SweptAngles;

@@ -13,8 +13,10 @@ mod frames;
 use core::time::Duration;
 
 use super::interleaved::{Contender, rounds};
-use super::measurement::{ChartEffort, ChartError, Measurement, Panel, Quantiles, Time};
-use super::methods::{ComparedMethod, Tables};
+use super::measurement::{
+    ChartEffort, ChartError, ComparedMethod, Measurement, Panel, Quantiles, Time,
+};
+use super::methods::Tables;
 use super::number_format::{grouped, two_digits};
 use crate::scene::{Scene, View};
 use edges::{Displacements, ExactEdges, ORDERS};
