@@ -196,7 +196,8 @@ impl Checked {
                 other => other.to_string(),
             };
             warn(format_args!(
-                "{}: the table cannot be kept ({reason}); this run uses it from memory, and the next will make it again",
+                "{}: the table cannot be kept ({reason}); this run uses it from memory, and the next will make it \
+                 again",
                 path.display()
             ));
         }

@@ -210,7 +210,8 @@ fn position(names: &[&str], column: &str) -> Result<usize, String> {
 fn number(column: &str, text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| {
         format!(
-            "{column} is {}, which is not a number: write 0.25 or 2.5e-1 (and inf or -inf for a dudphi straight in or out)",
+            "{column} is {}, which is not a number: write 0.25 or 2.5e-1 (and inf or -inf for a dudphi straight in or \
+             out)",
             quoted(text)
         )
     })

@@ -208,7 +208,8 @@ fn verify(file: &Path, report: Report) -> anyhow::Result<()> {
     if bytes != anew.bytes() {
         let same = bytes.iter().zip(anew.bytes()).take_while(|(a, b)| a == b);
         anyhow::bail!(
-            "{name}: the table is intact, but it is not the one that its specification gives: made anew, it differs from byte {} on",
+            "{name}: the table is intact, but it is not the one that its specification gives: made anew, it differs \
+             from byte {} on",
             same.count()
         );
     }

@@ -145,7 +145,8 @@ pub enum OrbitError {
     },
     /// A stepped solution did not end.
     #[error(
-        "no end found within {steps} steps (reached φ = {angle:?}): the ray winds near the photon sphere; use a larger step limit or the exact method"
+        "no end found within {steps} steps (reached φ = {angle:?}): the ray winds near the photon sphere; use a larger \
+         step limit or the exact method"
     )]
     StepLimit {
         /// The steps taken.

@@ -55,7 +55,8 @@ const METADATA_LIMIT: usize = 4096;
 pub(super) const LONGEST_HEAD: usize = (METADATA_AT + METADATA_LIMIT).next_multiple_of(ALIGNMENT);
 
 /// What the numbers of a table mean, in words. A table that says something else is refused.
-pub const CONVENTIONS: &str = "d2u/dphi2 = 3/2 u^2 - u; u = 1/r, Schwarzschild radius 1, radians; cubic B-splines of A, B, V, Z, H";
+pub const CONVENTIONS: &str = "d2u/dphi2 = 3/2 u^2 - u; u = 1/r, Schwarzschild radius 1, radians; \
+    cubic B-splines of A, B, V, Z, H";
 
 /// A table's description of itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -85,7 +86,8 @@ pub enum FormatError {
     },
     /// The bytes of a table were swapped in twos, fours or eights.
     #[error(
-        "its bytes are in another order, and this version of darkness reads format {VERSION}, which is little-endian: copy the table byte by byte"
+        "its bytes are in another order, and this version of darkness reads format {VERSION}, which is little-endian: \
+         copy the table byte by byte"
     )]
     Swapped,
     /// The table was made by another version of the program.

@@ -37,7 +37,8 @@ pub struct ChartNodes {
 /// No table can have a specification.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "no table can have this specification: each axis has 6 to 4096 nodes, the tolerance is a positive number, and the name has 1 to 100 bytes and no control characters"
+    "no table can have this specification: each axis has 6 to 4096 nodes, the tolerance is a positive number, and the \
+     name has 1 to 100 bytes and no control characters"
 )]
 pub struct SpecError;
 

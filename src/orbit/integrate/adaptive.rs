@@ -1,8 +1,10 @@
 //! Integration in steps as long as an error estimate allows.
 
-use super::crossings::{CrossingSearch, EventLog, MonotonePiece};
-use super::flight::{DEFAULT_MAX_STEPS, Departure, Flight, State, acceleration, depart, opposite};
-use super::{dop853, root};
+use super::crossings::{CrossingSearch, EventLog};
+use super::dop853;
+use super::flight::{
+    DEFAULT_MAX_STEPS, Departure, Flight, State, Step, acceleration, depart, opposite,
+};
 use crate::orbit::events::{Event, Orbits, TurningPoint, WatchedRadius};
 use crate::orbit::ray::{OrbitError, Ray};
 
@@ -118,7 +120,13 @@ impl Flight for Adaptive {
             }
             let turns = opposite(state.w, next.w) || next.w == 0.0;
             let eventful = turns || !crossings.clear_until(next.u);
-            if eventful && pass_step(&mut crossings, state, next, h, angle) {
+            let step = Step {
+                from: state,
+                to: next,
+                h,
+                angle,
+            };
+            if eventful && pass_step(&mut crossings, &step) {
                 return Ok(crossings);
             }
             angle += h;
@@ -132,65 +140,11 @@ impl Flight for Adaptive {
     }
 }
 
-/// Reports the events on the step of length `h` from `from`, at swept angle `angle`, to `to`. Returns whether the
-/// flight ends on it.
-fn pass_step<L: EventLog>(
-    crossings: &mut CrossingSearch<'_, L>,
-    from: State,
-    to: State,
-    h: f64,
-    angle: f64,
-) -> bool {
-    let inward = from.w > 0.0 || (from.w == 0.0 && to.u > from.u);
-    if !opposite(from.w, to.w) {
-        let piece = MonotonePiece {
-            from: from.u,
-            to: to.u,
-            inward,
-            turns: to.w == 0.0,
-        };
-        if piece.turns {
-            crossings.turn(to.u, angle + h);
-        }
-        return pass_piece(crossings, piece, (0.0, h), from, angle);
-    }
-    let turn = root::bracketed(0.0, h, !inward, |part| {
-        let at = dop853::step(from, part);
-        (at.w, acceleration(at.u))
-    });
-    let turning = dop853::step(from, turn).u;
-    crossings.turn(turning, angle + turn);
-    let towards = MonotonePiece {
-        from: from.u,
-        to: turning,
-        inward,
-        turns: true,
-    };
-    let back = MonotonePiece {
-        from: turning,
-        to: to.u,
-        inward: !inward,
-        turns: false,
-    };
-    pass_piece(crossings, towards, (0.0, turn), from, angle)
-        || pass_piece(crossings, back, (turn, h), from, angle)
-}
-
-/// Reports the events on the piece between the two parts `(first, last)` of a step.
-fn pass_piece<L: EventLog>(
-    crossings: &mut CrossingSearch<'_, L>,
-    piece: MonotonePiece,
-    (first, last): (f64, f64),
-    from: State,
-    angle: f64,
-) -> bool {
-    let mut reached = first;
-    crossings.pass(piece, |u| {
-        reached = root::bracketed(reached, last, piece.inward, |part| {
-            let at = dop853::step(from, part);
-            (at.u - u, at.w)
-        });
-        angle + reached
+/// Reports the events on a step. Returns whether the flight ends on it.
+fn pass_step<L: EventLog>(crossings: &mut CrossingSearch<'_, L>, step: &Step) -> bool {
+    step.pass(crossings, 0.0, |x| {
+        let State { u, w } = dop853::step(step.from, x);
+        [u, w, acceleration(u)]
     })
 }
 

@@ -1,8 +1,9 @@
 //! Integration in steps of one length.
 
 use super::crossings::{CrossingSearch, EventLog, MonotonePiece};
-use super::flight::{DEFAULT_MAX_STEPS, Departure, Flight, State, acceleration, depart, opposite};
-use super::root;
+use super::flight::{
+    DEFAULT_MAX_STEPS, Departure, Flight, State, Step, acceleration, depart, opposite,
+};
 use crate::orbit::events::{Event, Orbits, TurningPoint, WatchedRadius};
 use crate::orbit::ray::{OrbitError, Ray};
 
@@ -115,15 +116,6 @@ impl Orbits for FixedStep {
     }
 }
 
-/// A step taken.
-struct Step {
-    from: State,
-    to: State,
-    h: f64,
-    /// The angle swept at `from`.
-    angle: f64,
-}
-
 #[inline]
 pub(super) fn euler(at: State, h: f64) -> State {
     State {
@@ -169,45 +161,12 @@ fn pass_line<L: EventLog>(crossings: &mut CrossingSearch<'_, L>, step: &Step) ->
 
 /// Reports the events on a step of the Runge–Kutta method, on its cubic. Returns whether the flight ends on it.
 fn pass_cubic<L: EventLog>(crossings: &mut CrossingSearch<'_, L>, step: &Step) -> bool {
-    let Step { from, to, h, .. } = *step;
     let cubic = HermiteCubic::new(step);
-    let inward = from.w > 0.0 || (from.w == 0.0 && to.u > from.u);
-    if !opposite(from.w, to.w) {
-        let piece = MonotonePiece {
-            from: from.u,
-            to: to.u,
-            inward,
-            turns: to.w == 0.0,
-        };
-        if piece.turns {
-            crossings.turn(to.u, step.angle + h);
-        }
-        return cubic.pass(crossings, piece, (0.0, h), step.angle);
-    }
-    let turn = root::bracketed(0.0, h, !inward, |part| {
-        (cubic.slope(part), cubic.curvature(part))
-    });
-    let turning = from.u + cubic.rise(turn);
-    crossings.turn(turning, step.angle + turn);
-    let towards = MonotonePiece {
-        from: from.u,
-        to: turning,
-        inward,
-        turns: true,
-    };
-    let back = MonotonePiece {
-        from: turning,
-        to: to.u,
-        inward: !inward,
-        turns: false,
-    };
-    cubic.pass(crossings, towards, (0.0, turn), step.angle)
-        || cubic.pass(crossings, back, (turn, h), step.angle)
+    step.pass(crossings, step.from.u, |x| cubic.at(x))
 }
 
 /// `u − u_from = c₁x + c₂x² + c₃x³` at angle x from a step's start, with the step's u and du/dφ at both ends.
 struct HermiteCubic {
-    from: f64,
     c1: f64,
     c2: f64,
     c3: f64,
@@ -218,41 +177,19 @@ impl HermiteCubic {
         let Step { from, to, h, .. } = *step;
         let mean = (to.u - from.u) / h;
         Self {
-            from: from.u,
             c1: from.w,
             c2: (3.0 * mean - 2.0 * from.w - to.w) / h,
             c3: (from.w + to.w - 2.0 * mean) / (h * h),
         }
     }
 
-    fn rise(&self, x: f64) -> f64 {
-        x * (self.c1 + x * (self.c2 + x * self.c3))
-    }
-
-    fn slope(&self, x: f64) -> f64 {
-        self.c1 + x * (2.0 * self.c2 + x * 3.0 * self.c3)
-    }
-
-    fn curvature(&self, x: f64) -> f64 {
-        2.0 * self.c2 + x * 6.0 * self.c3
-    }
-
-    /// Reports the events between the angles `first` and `last` from the step's start, which is at `angle`.
-    fn pass<L: EventLog>(
-        &self,
-        crossings: &mut CrossingSearch<'_, L>,
-        piece: MonotonePiece,
-        (first, last): (f64, f64),
-        angle: f64,
-    ) -> bool {
-        let mut reached = first;
-        crossings.pass(piece, |u| {
-            let rise = u - self.from;
-            reached = root::bracketed(reached, last, piece.inward, |x| {
-                (self.rise(x) - rise, self.slope(x))
-            });
-            angle + reached
-        })
+    /// Returns `u − u_from` and its two derivatives at x.
+    fn at(&self, x: f64) -> [f64; 3] {
+        [
+            x * (self.c1 + x * (self.c2 + x * self.c3)),
+            self.c1 + x * (2.0 * self.c2 + x * 3.0 * self.c3),
+            2.0 * self.c2 + x * 6.0 * self.c3,
+        ]
     }
 }
 

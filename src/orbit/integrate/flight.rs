@@ -1,6 +1,7 @@
 //! What both integrators share: the equation, the start of a flight, and what is asked of it.
 
 use super::crossings::{CrossingSearch, EventLog, MonotonePiece};
+use super::root;
 use crate::orbit::events::{Event, EventKind, TurningPoint, WatchedRadius};
 use crate::orbit::ray::{OrbitError, Ray};
 
@@ -64,6 +65,72 @@ pub(super) fn depart<L: EventLog>(ray: Ray, watched: &[WatchedRadius], log: L) -
         return Departure::Done(crossings);
     }
     Departure::Bound(start, CrossingSearch::new(watched, log, start.u))
+}
+
+/// A step taken.
+pub(super) struct Step {
+    pub(super) from: State,
+    pub(super) to: State,
+    /// Its length in φ.
+    pub(super) h: f64,
+    /// The angle swept at `from`.
+    pub(super) angle: f64,
+}
+
+impl Step {
+    /// Reports the events on the step, which is cut at its turning point. Returns whether the flight ends on it.
+    ///
+    /// `at(x)` returns `u − origin`, du/dφ and d²u/dφ² at the angle x from the step's start.
+    pub(super) fn pass<L: EventLog>(
+        &self,
+        crossings: &mut CrossingSearch<'_, L>,
+        origin: f64,
+        at: impl Fn(f64) -> [f64; 3],
+    ) -> bool {
+        let Self { from, to, h, angle } = *self;
+        let pass = |crossings: &mut CrossingSearch<'_, L>, piece: MonotonePiece, first, last| {
+            let mut reached = first;
+            crossings.pass(piece, |u| {
+                let level = u - origin;
+                reached = root::bracketed(reached, last, piece.inward, |x| {
+                    let [offset, slope, _] = at(x);
+                    (offset - level, slope)
+                });
+                angle + reached
+            })
+        };
+        let inward = from.w > 0.0 || (from.w == 0.0 && to.u > from.u);
+        let whole = MonotonePiece {
+            from: from.u,
+            to: to.u,
+            inward,
+            turns: to.w == 0.0,
+        };
+        if !opposite(from.w, to.w) {
+            if whole.turns {
+                crossings.turn(to.u, angle + h);
+            }
+            return pass(crossings, whole, 0.0, h);
+        }
+        let turn = root::bracketed(0.0, h, !inward, |x| {
+            let [_, slope, curvature] = at(x);
+            (slope, curvature)
+        });
+        let turning = origin + at(turn)[0];
+        crossings.turn(turning, angle + turn);
+        let towards = MonotonePiece {
+            to: turning,
+            turns: true,
+            ..whole
+        };
+        let back = MonotonePiece {
+            from: turning,
+            inward: !inward,
+            turns: false,
+            ..whole
+        };
+        pass(crossings, towards, 0.0, turn) || pass(crossings, back, turn, h)
+    }
 }
 
 /// A method that steps along a ray until its end, or until `log` wants no further event.
