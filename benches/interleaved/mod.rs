@@ -1,12 +1,12 @@
-//! Printing what contenders side by side come to.
+//! Prints the times of contenders that run in turn.
 
 use std::time::Duration;
 
 pub(crate) use darkness::chart::interleaved::Contender;
 use darkness::chart::interleaved::rounds as run_rounds;
 
-/// Runs the contenders in turn, round after round, and prints for each the median time per item and in all, and the median of its
-/// ratio to the first contender in the same round.
+/// Runs the contenders in turn, in every round. Prints each contender's median time, per item and in total, and the
+/// median over the rounds of the first contender's time divided by its own.
 pub(crate) fn compare(title: &str, items: usize, rounds: usize, contenders: &mut [Contender<'_>]) {
     let times = run_rounds(
         contenders,

@@ -1,22 +1,26 @@
-//! Every measured point as a row of CSV.
+//! The measured points as a CSV file.
 
 use std::io::{self, Write};
 
-use super::{Chart, machine};
+use super::data::ChartData;
+use super::machine::machine;
 
-/// The columns.
+/// The column names.
 const HEADER: &str =
     "panel,method,setting,ns_per_ray,ratio_to_rk4,error_p50,error_p99,error_max,failures,count";
 
-/// Writes the chart: a line that begins with `#` and says what the numbers mean, the header, a row for each point. A
-/// field is empty where nothing was measured.
+/// Writes a comment line that starts with `#` and explains the numbers, the header, and one row per measured point.
+/// Fields that were not measured are empty.
 ///
 /// # Errors
-/// What `out` returns.
-pub fn write_csv(chart: &Chart, out: &mut impl Write) -> io::Result<()> {
+/// Returns the errors of `out`.
+pub fn write_csv(chart: &ChartData, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
-        "# darkness {} on {}; ratio_to_rk4 = time of RK4 in steps of h={} (whose error_p99 in panel rays is 1e-6) / time of this method, taken in each of the interleaved rounds, their median: above 1 is faster than RK4; errors in radians (panel scene: in pixels, times per pixel)",
+        "# darkness {} on {}; ratio_to_rk4 = time of RK4 in steps of h={} (whose error_p99 in panel rays is 1e-6) / \
+         time of this method, the median over interleaved rounds: above 1 is faster than RK4; \
+         ns_per_ray = RK4's median time / ratio_to_rk4; errors in radians \
+         (panel scene: in pixels, times per pixel)",
         env!("CARGO_PKG_VERSION"),
         machine(),
         chart.rays.baseline_step,

@@ -1,29 +1,30 @@
-//! Timing two or more contenders side by side: on a machine whose speed drifts, only ratios taken at the same moment
-//! mean anything.
+//! Times two or more contenders in turn. Where a machine's speed drifts, only ratios measured at the same moment are
+//! meaningful.
 
 use std::time::{Duration, Instant};
 
-/// A way of doing the work: its name, and one run of it. What a run returns is summed up as proof that it ran.
+/// One way to do the work. The values that its runs return are summed, so that the compiler cannot drop them.
 pub struct Contender<'a> {
-    /// What to call it.
+    /// Its name.
     pub name: &'a str,
-    /// One run.
+    /// Runs it once.
     pub run: Box<dyn FnMut() -> f64 + 'a>,
 }
 
-/// The times of all contenders, round by round.
+/// The times of all contenders in all rounds.
 #[derive(Debug, Clone)]
 pub struct Times {
-    /// Seconds of one run, by contender and round.
+    /// Seconds per run, by contender and round.
     seconds: Vec<Vec<f64>>,
-    /// What all runs returned, together.
+    /// The sum of the values that all runs returned.
     pub sum: f64,
 }
 
-/// Runs the contenders in turn, `rounds` times over, on this thread; `round_done` is called after each round.
+/// Runs the contenders in turn on this thread, in one round to warm up and `rounds` that count. Calls `round_done`
+/// after each round.
 ///
-/// A run shorter than `least` is repeated until it takes as long, within its turn, so that what a contender finds in
-/// the caches is its own. No round but the first is begun after `most`.
+/// Within its turn a contender whose run is shorter than `least` is repeated until it takes that long, so that the
+/// caches hold its own data. After `most` no further round starts, except the first that counts.
 pub fn rounds(
     contenders: &mut [Contender<'_>],
     rounds: usize,
@@ -59,19 +60,20 @@ pub fn rounds(
 }
 
 impl Times {
-    /// The median time of one run of contender `i`, in seconds.
+    /// Returns the median time of one run of contender `i`, in seconds.
     pub fn median(&self, i: usize) -> f64 {
         median(self.seconds[i].clone())
     }
 
-    /// How many times as fast as contender `baseline` contender `i` is: the median of the rounds' ratios.
+    /// Returns the time of contender `baseline` divided by the time of contender `i`: the median of the ratios in each
+    /// round.
     pub fn ratio(&self, i: usize, baseline: usize) -> f64 {
         let rounds = self.seconds[baseline].iter().zip(&self.seconds[i]);
         median(rounds.map(|(base, this)| base / this).collect())
     }
 }
 
-/// The middle value; not a number where there is none.
+/// Returns the middle value, or NaN for an empty list. Of two middle values it returns the larger.
 pub fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)

@@ -1,8 +1,6 @@
-//! The methods that are compared, and the knob that each of them has.
+//! The methods that are compared, and their settings.
 
-use core::fmt;
-
-use super::Effort;
+use super::measurement::{ChartEffort, ComparedMethod};
 use crate::orbit::exact::Exact;
 use crate::orbit::integrate::{Adaptive, FixedStep, Scheme};
 use crate::orbit::{Orbits, Ray};
@@ -10,62 +8,7 @@ use crate::render::pixelwise;
 use crate::scene::{Scene, View};
 use crate::table::{Spec, SpecError, Table};
 
-/// A way to answer what happens to a ray.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Method {
-    /// Euler's method in equal steps.
-    Euler,
-    /// The classical Runge–Kutta method in equal steps.
-    Rk4,
-    /// DOP853 in steps as long as a tolerance allows.
-    Adaptive,
-    /// Elliptic integrals.
-    Exact,
-    /// The draft table.
-    TableDraft,
-    /// The standard table.
-    TableStandard,
-    /// The fine table.
-    TableFine,
-    /// Tables of the standard one's nodes along each axis times some factors.
-    TableScaled,
-}
-
-impl Method {
-    /// All of them, in the order they are drawn.
-    pub const ALL: [Self; 8] = [
-        Self::Euler,
-        Self::Rk4,
-        Self::Adaptive,
-        Self::TableScaled,
-        Self::TableDraft,
-        Self::TableStandard,
-        Self::TableFine,
-        Self::Exact,
-    ];
-
-    /// Its name in the CSV.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Euler => "euler",
-            Self::Rk4 => "rk4",
-            Self::Adaptive => "adaptive",
-            Self::Exact => "exact",
-            Self::TableDraft => "table-draft",
-            Self::TableStandard => "table-standard",
-            Self::TableFine => "table-fine",
-            Self::TableScaled => "table-scaled",
-        }
-    }
-}
-
-impl fmt::Display for Method {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-/// A ray, and the radius whose first crossing is asked for.
+/// A ray and a radius. The answer is the angle swept to the ray's first crossing of the radius.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Question {
     /// The ray.
@@ -74,9 +17,9 @@ pub struct Question {
     pub radius: f64,
 }
 
-/// A method, to be asked many questions at once: the method is looked up once for all of them.
+/// A method that answers many questions per virtual call, so that the call's cost does not count.
 pub trait Answers: Orbits {
-    /// The sum of the angles of the first crossings, of those that there are.
+    /// Returns the sum of the angles to the first crossings. Rays without a crossing are skipped.
     fn sum(&self, questions: &[Question]) -> f64;
 }
 
@@ -89,19 +32,19 @@ impl<T: Orbits> Answers for T {
     }
 }
 
-/// A method with its knob set.
+/// A method at one setting.
 pub struct Contestant<'a> {
     /// The method.
-    pub method: Method,
-    /// The knob's setting, as words `name=value`.
+    pub method: ComparedMethod,
+    /// The settings: `name=value`, separated by spaces.
     pub setting: String,
-    /// What answers.
+    /// The method's implementation.
     pub orbits: Box<dyn Answers + 'a>,
 }
 
 impl<'a> Contestant<'a> {
-    /// A method with its knob set.
-    pub fn new(method: Method, setting: String, orbits: impl Answers + 'a) -> Self {
+    /// Creates a contestant.
+    pub fn new(method: ComparedMethod, setting: String, orbits: impl Answers + 'a) -> Self {
         Self {
             method,
             setting,
@@ -109,13 +52,13 @@ impl<'a> Contestant<'a> {
         }
     }
 
-    /// Euler's method or RK4 in steps of `h`.
+    /// Creates Euler's method or RK4 with steps of `h` radians.
     pub fn fixed(scheme: Scheme, h: f64) -> Self {
         let method = match scheme {
-            Scheme::Euler => Method::Euler,
-            Scheme::Rk4 => Method::Rk4,
+            Scheme::Euler => ComparedMethod::Euler,
+            Scheme::Rk4 => ComparedMethod::Rk4,
         };
-        // At the finest steps a near-critical ray takes more than the usual limit.
+        // With the finest steps a near-critical ray takes more steps than the usual limit.
         let orbits = FixedStep {
             max_steps: 1_000_000,
             ..FixedStep::new(scheme, h)
@@ -123,62 +66,62 @@ impl<'a> Contestant<'a> {
         Self::new(method, format!("h={h}"), orbits)
     }
 
-    /// Adaptive integration to `tolerance`.
+    /// Creates adaptive integration to `tolerance`.
     pub fn adaptive(tolerance: f64) -> Self {
         let setting = format!("tolerance={tolerance:e}");
-        Self::new(Method::Adaptive, setting, Adaptive::new(tolerance))
+        Self::new(ComparedMethod::Adaptive, setting, Adaptive::new(tolerance))
     }
 
-    /// A table.
-    pub fn table(method: Method, table: &'a Table) -> Self {
+    /// Creates a contestant that reads a table.
+    pub fn table(method: ComparedMethod, table: &'a Table) -> Self {
         let nodes = table.metadata().spec.nodes();
         let setting = format!("nodes={nodes} bytes={}", table.bytes().len());
         Self::new(method, setting, table.lookup())
     }
 
-    /// The exact method.
+    /// Creates the exact method.
     pub fn exact() -> Self {
-        Self::new(Method::Exact, String::new(), Exact)
+        Self::new(ComparedMethod::Exact, String::new(), Exact)
     }
 }
 
-/// A method that steps along rays, pixel by pixel.
+/// A method that steps along the ray of each pixel.
 #[derive(Debug, Clone, Copy)]
 pub enum Stepper {
-    /// In equal steps.
+    /// With equal steps.
     Fixed(FixedStep),
-    /// In steps as long as a tolerance allows.
+    /// With steps that a tolerance controls.
     Adaptive(Adaptive),
 }
 
 impl Stepper {
-    /// Euler's method in steps of `h`.
+    /// Creates Euler's method with steps of `h` radians.
     pub fn euler(h: f64) -> Self {
         Self::Fixed(FixedStep::new(Scheme::Euler, h))
     }
 
-    /// RK4 in steps of `h`.
+    /// Creates RK4 with steps of `h` radians.
     pub fn rk4(h: f64) -> Self {
         Self::Fixed(FixedStep::new(Scheme::Rk4, h))
     }
 
-    /// Adaptive integration to `tolerance`.
+    /// Creates adaptive integration to `tolerance`.
     pub fn adaptive(tolerance: f64) -> Self {
         Self::Adaptive(Adaptive::new(tolerance))
     }
 
-    /// Which method it is.
-    pub fn method(&self) -> Method {
+    /// Returns the method.
+    pub fn method(&self) -> ComparedMethod {
         match self {
             Self::Fixed(fixed) => match fixed.scheme {
-                Scheme::Euler => Method::Euler,
-                Scheme::Rk4 => Method::Rk4,
+                Scheme::Euler => ComparedMethod::Euler,
+                Scheme::Rk4 => ComparedMethod::Rk4,
             },
-            Self::Adaptive(_) => Method::Adaptive,
+            Self::Adaptive(_) => ComparedMethod::Adaptive,
         }
     }
 
-    /// Its knob's setting, as words `name=value`.
+    /// Returns the setting as `name=value`.
     pub fn setting(&self) -> String {
         match self {
             Self::Fixed(fixed) => format!("h={}", fixed.h),
@@ -186,7 +129,7 @@ impl Stepper {
         }
     }
 
-    /// The method.
+    /// Returns the method's implementation.
     pub fn orbits(&self) -> &dyn Orbits {
         match self {
             Self::Fixed(fixed) => fixed,
@@ -194,7 +137,7 @@ impl Stepper {
         }
     }
 
-    /// Whether a pixel (column, row) of `scene` sees the disk; not where the method gives up.
+    /// Returns whether a pixel (column, row) of `scene` sees the disk. If the method fails, the pixel does not.
     pub fn sees(&self, scene: &Scene, view: &View, pixel: (u32, u32)) -> bool {
         match self {
             Self::Fixed(fixed) => pixelwise::sees_in_steps(scene, view, fixed, pixel),
@@ -205,28 +148,28 @@ impl Stepper {
     }
 }
 
-/// The tables that are compared, in memory.
+/// The tables that are compared.
 #[derive(Debug)]
 pub struct Tables {
-    files: Vec<(Method, Table)>,
+    files: Vec<(ComparedMethod, Table)>,
     scaled: Vec<Table>,
 }
 
 impl Tables {
-    /// Makes them: the program's own three tables, and tables of the standard one's nodes along each axis times some
-    /// factors.
+    /// Generates the program's three tables, and tables with the standard table's number of nodes along each axis,
+    /// times several factors.
     ///
     /// # Errors
-    /// [`SpecError`] where one of them cannot be made.
-    pub fn new(effort: Effort) -> Result<Self, SpecError> {
+    /// [`SpecError`] if a table cannot be generated.
+    pub fn new(effort: ChartEffort) -> Result<Self, SpecError> {
         let factors: &[f64] = match effort {
-            Effort::Quick => &[0.125, 0.25, 0.5, 1.0, 2.0],
-            Effort::Full => &[0.125, 0.25, 0.5, 1.0, 2.0, 4.0],
+            ChartEffort::Quick => &[0.125, 0.25, 0.5, 1.0, 2.0],
+            ChartEffort::Full => &[0.125, 0.25, 0.5, 1.0, 2.0, 4.0],
         };
         let files = [
-            (Method::TableDraft, Spec::draft()),
-            (Method::TableStandard, Spec::standard()),
-            (Method::TableFine, Spec::fine()),
+            (ComparedMethod::TableDraft, Spec::draft()),
+            (ComparedMethod::TableStandard, Spec::standard()),
+            (ComparedMethod::TableFine, Spec::fine()),
         ];
         let files = files
             .into_iter()
@@ -241,7 +184,7 @@ impl Tables {
     }
 
     /// Returns the program's own three tables.
-    pub fn tables(&self) -> &[(Method, Table)] {
+    pub fn tables(&self) -> &[(ComparedMethod, Table)] {
         &self.files
     }
 
@@ -256,6 +199,6 @@ impl Tables {
     pub fn scaled(&self) -> impl Iterator<Item = Contestant<'_>> {
         self.scaled
             .iter()
-            .map(|table| Contestant::table(Method::TableScaled, table))
+            .map(|table| Contestant::table(ComparedMethod::TableScaled, table))
     }
 }

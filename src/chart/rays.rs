@@ -1,59 +1,58 @@
-//! The first panel: what one swept angle costs, and how wrong it is.
+//! The first panel: the time and the error of one swept angle.
 //!
-//! The rays are those of cameras everywhere. Camera radii are spread evenly in log r over 1.05 … 1000, directions
-//! over the sphere, disk radii in log r over 3 … 30, by an additive sequence that fills the cube evenly and is the
-//! same on every machine; of these the rays that cross their disk radius are kept. The question is the angle swept
-//! until they first do. Every method answers it for the same rays and is charged for no more: the integrators stop
-//! there.
+//! The question is the angle swept until a ray first crosses a given radius. The rays are those of cameras everywhere:
+//! camera radii evenly in log r over 1.05 … 1000, directions evenly over the sphere, disk radii evenly in log r over
+//! 3 … 30. A low-discrepancy sequence, the same on every machine, chooses them. Rays that do not cross their radius are
+//! left out. Every method answers for the same rays, and integrators stop at the crossing.
 //!
 //! # The exact method's own error
-//! The others are wrong by their difference from the exact method. Its own point shows how far it is from itself: the
-//! integral over the whole stretch against the sum of the integrals over two parts of it, which is of the size of its
-//! rounding errors. (That it is the right function, not only a consistent one, is for `tests/swept_angles.rs` to say,
-//! which compares it with references of 60 digits.)
+//! The error of every other method is its difference from the exact method. For the exact method itself it is the
+//! difference between one integral and the sum of two over the same range, which is about its rounding error. (That it
+//! computes the right function, not merely a consistent one, is tested in `tests/swept_angles.rs` against references of
+//! 60 digits.)
 
 use std::time::Duration;
 
 use rayon::prelude::*;
 
-use super::halves::in_two_parts;
+use super::exact_self_check::angle_in_two_parts;
 use super::interleaved::{Contender, rounds};
-use super::methods::{Contestant, Method, Question, Tables};
-use super::{Effort, Measurement, Panel, Quantiles, Time};
+use super::measurement::{ChartEffort, ComparedMethod, Measurement, Panel, Quantiles, Time};
+use super::methods::{Contestant, Question, Tables};
 use crate::orbit::exact::Exact;
 use crate::orbit::integrate::Scheme;
 use crate::orbit::invariants::Orbit;
 use crate::orbit::{Orbits, Ray};
 
-/// Where the cameras are.
+/// The range of camera radii.
 const CAMERA_RADII: (f64, f64) = (1.05, 1000.0);
 
-/// Where the disk's edges are.
+/// The range of radii to be crossed.
 const DISK_RADII: (f64, f64) = (3.0, 30.0);
 
-/// A ray that starts closer than this to the radius it is to cross asks nothing.
+/// Rays that start closer than this, relatively, to the radius to be crossed are left out.
 const APART: f64 = 1e-6;
 
-/// The error that the baseline is to have.
+/// The 99th percentile of the baseline's error, in radians.
 const BASELINE_ERROR: f64 = 1e-6;
 
-/// What is measured of one swept angle.
+/// The measurements of one swept angle.
 #[derive(Debug)]
-pub struct Rays {
+pub struct RayPanel {
     /// Every method at every setting.
     pub points: Vec<Measurement>,
-    /// The step with which RK4's 99th percentile is 1e-6.
+    /// The step at which the 99th percentile of RK4's error is 1e-6.
     pub baseline_step: f64,
-    /// How many rays.
+    /// The number of rays.
     pub count: usize,
 }
 
-impl Rays {
-    /// Measures; `progress` is told which share is done.
-    pub fn measure(tables: &Tables, effort: Effort, progress: &dyn Fn(f64)) -> Self {
+impl RayPanel {
+    /// Measures all methods. `progress` receives the share that is done, from 0 to 1.
+    pub fn measure(tables: &Tables, effort: ChartEffort, progress: &dyn Fn(f64)) -> Self {
         let (count, repetitions) = match effort {
-            Effort::Quick => (1024, 11),
-            Effort::Full => (4096, 15),
+            ChartEffort::Quick => (1024, 11),
+            ChartEffort::Full => (4096, 15),
         };
         let questions = questions(count);
         let truths: Vec<f64> = questions.par_iter().map(truth).collect();
@@ -86,10 +85,10 @@ impl Rays {
                     panel: Panel::Rays,
                     method: contestant.method,
                     setting: contestant.setting.clone(),
-                    time: Some(Time {
-                        nanoseconds: times.median(i) * 1e9 / questions.len() as f64,
-                        ratio_to_rk4: times.ratio(i, 0),
-                    }),
+                    time: Some(Time::new(
+                        times.median(0) * 1e9 / questions.len() as f64,
+                        times.ratio(i, 0),
+                    )),
                     failures: (questions.len() - errors.len()) as u64,
                     count: questions.len() as u64,
                     error: Quantiles::of(errors),
@@ -104,15 +103,15 @@ impl Rays {
     }
 }
 
-/// Every method at every setting; first the baseline.
-fn contestants(tables: &Tables, effort: Effort, baseline_step: f64) -> Vec<Contestant<'_>> {
+/// Lists every method at every setting, the baseline first.
+fn contestants(tables: &Tables, effort: ChartEffort, baseline_step: f64) -> Vec<Contestant<'_>> {
     let (euler, rk4, adaptive): (&[f64], &[f64], &[f64]) = match effort {
-        Effort::Quick => (
+        ChartEffort::Quick => (
             &[0.1, 0.01, 1e-3],
             &[0.5, 0.2, 0.05, 0.01],
             &[1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13],
         ),
-        Effort::Full => (
+        ChartEffort::Full => (
             &[0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4],
             &[0.5, 0.3, 0.2, 0.1, 0.05, 0.02, 0.01, 5e-3, 2e-3],
             &[
@@ -130,8 +129,8 @@ fn contestants(tables: &Tables, effort: Effort, baseline_step: f64) -> Vec<Conte
     all
 }
 
-/// `count` rays that cross their radius: those of the sequence of powers of 1/g, g⁴ = g + 1, which fills the cube
-/// evenly (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
+/// Returns `count` rays that cross their radius. They follow the additive sequence with steps 1/g, 1/g², 1/g³, where
+/// g⁴ = g + 1 (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
 fn questions(count: usize) -> Vec<Question> {
     const STEPS: [f64; 3] = [
         0.819_172_513_396_164_4,
@@ -150,7 +149,7 @@ fn questions(count: usize) -> Vec<Question> {
             });
             let u0 = 1.0 / between(CAMERA_RADII, x);
             let radius = between(DISK_RADII, z);
-            // The part of the direction towards the hole is spread evenly over −1 … 1.
+            // Directions spread evenly over the sphere have their component towards the hole spread evenly over −1 … 1.
             let inward = 2.0 * y - 1.0;
             let kappa = inward / ((1.0 - inward) * (1.0 + inward)).sqrt();
             let ray = Ray::new(u0, u0 * (1.0 - u0).sqrt() * kappa).ok()?;
@@ -162,27 +161,28 @@ fn questions(count: usize) -> Vec<Question> {
         .collect()
 }
 
+/// Computes the exact answer.
 fn truth(question: &Question) -> f64 {
     let first = Exact.first_crossing(question.ray, question.radius);
     first.ok().flatten().unwrap_or(f64::NAN)
 }
 
-/// The exact answer, in two parts.
-fn parts(question: &Question) -> Option<f64> {
+/// Computes the exact answer as a sum of two integrals.
+fn truth_in_two_parts(question: &Question) -> Option<f64> {
     let orbit = Orbit::new(question.ray);
     let to = orbit.point_at(1.0 / question.radius)?;
     let straight = orbit.inward == (to.u > orbit.start.u);
-    Some(in_two_parts(&orbit, to, !straight))
+    Some(angle_in_two_parts(&orbit, to, !straight))
 }
 
-/// How wrong the answers are; those that are missing are not among them.
+/// Computes the errors of the answers. Missing answers are skipped.
 fn errors(contestant: &Contestant<'_>, questions: &[Question], truths: &[f64]) -> Vec<f64> {
     questions
         .par_iter()
         .zip(truths)
         .filter_map(|(question, truth)| {
-            let angle = if contestant.method == Method::Exact {
-                parts(question)?
+            let angle = if contestant.method == ComparedMethod::Exact {
+                truth_in_two_parts(question)?
             } else {
                 let orbits = &contestant.orbits;
                 orbits
@@ -194,7 +194,8 @@ fn errors(contestant: &Contestant<'_>, questions: &[Question], truths: &[f64]) -
         .collect()
 }
 
-/// The step with which RK4's 99th percentile is [`BASELINE_ERROR`] or up to 3 % less: bisected in log h.
+/// Finds, by bisection in log h, a step at which the 99th percentile of RK4's error is 97 % to 100 % of
+/// [`BASELINE_ERROR`].
 fn baseline_step(questions: &[Question], truths: &[f64]) -> f64 {
     let p99 = |h: f64| {
         let errors = errors(&Contestant::fixed(Scheme::Rk4, h), questions, truths);
@@ -213,7 +214,7 @@ fn baseline_step(questions: &[Question], truths: &[f64]) -> f64 {
             }
         }
     }
-    // Four digits of it, downwards, are enough to repeat it with.
+    // Rounds down, so that the printed step repeats the measurement.
     (low * 1e5).floor() / 1e5
 }
 
@@ -223,7 +224,7 @@ mod tests {
     use crate::orbit::invariants::Family;
 
     #[test]
-    fn the_rays_are_of_all_kinds_and_cross_their_radii() {
+    fn rays_of_both_families_cross_their_radii() {
         let questions = questions(1024);
         assert_eq!(questions.len(), 1024);
         let orbits = questions.iter().map(|question| Orbit::new(question.ray));
@@ -239,9 +240,9 @@ mod tests {
     }
 
     #[test]
-    fn two_parts_make_the_whole() {
+    fn two_parts_sum_to_the_whole() {
         for question in questions(512) {
-            let (whole, parts) = (truth(&question), parts(&question).unwrap());
+            let (whole, parts) = (truth(&question), truth_in_two_parts(&question).unwrap());
             assert!(
                 (whole - parts).abs() < 1e-10,
                 "{question:?}: {whole} and {parts}"
@@ -250,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn the_baseline_is_right_to_its_error() {
+    fn the_baseline_has_its_error() {
         let questions = questions(256);
         let truths: Vec<f64> = questions.iter().map(truth).collect();
         let h = baseline_step(&questions, &truths);

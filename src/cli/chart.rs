@@ -1,4 +1,4 @@
-//! `darkness chart`: speed against accuracy, measured on this machine.
+//! `darkness chart`: measures speed against accuracy on this machine.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -8,26 +8,26 @@ use clap::Args;
 use super::picture::Destination;
 use super::progress::{Report, duration};
 use super::{Misuse, Threads, print, start_threads, target};
-use crate::chart::{Chart, Effort, draw, write_csv};
+use crate::chart::{ChartData, ChartEffort, draw, write_csv};
 use crate::output::write_whole;
 use crate::scene::{DEFAULT_SCENE, Scene};
 
 /// Measure speed against accuracy on this machine, and draw it as an SVG figure
 ///
-/// Every method is asked the same questions: single rays, near-critical rays, and SCENE's frame. Times are medians of
-/// interleaved repetitions on one thread; run it on a machine that has little else to do.
+/// Every method answers the same questions: single rays, near-critical rays, and SCENE's frame. Times are medians of
+/// interleaved repetitions on one thread. Run it on an otherwise idle machine.
 #[derive(Debug, Args)]
 pub(super) struct ChartArgs {
     /// The scene whose frame is measured: a TOML file, or the name of a built-in scene (`darkness scene` lists them)
     #[arg(value_name = "SCENE", default_value = DEFAULT_SCENE)]
     scene: PathBuf,
-    /// Where the figure goes: a file ending in .svg, or - for the standard output
+    /// The file to write the figure to, ending in .svg, or - for the standard output
     #[arg(short, long, value_name = "OUT.svg", default_value = "chart.svg")]
     output: PathBuf,
-    /// Write every measured point to this file too
+    /// Also write every measured point to this CSV file
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Measure in some seconds, with fewer rays, settings and repetitions, rather than in some minutes
+    /// Measure with fewer rays, settings and repetitions, in seconds instead of minutes
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
@@ -48,11 +48,11 @@ pub(super) fn run(args: &ChartArgs, report: Report) -> anyhow::Result<()> {
     let svg = draw::svg(&chart)?;
     if let Some(path) = &args.csv {
         write_whole(path, |file| write_csv(&chart, file)).map_err(|error| {
-            anyhow::anyhow!("{}: the CSV cannot be written: {error}", path.display())
+            anyhow::anyhow!("{}: cannot write the CSV file: {error}", path.display())
         })?;
     }
     destination.write(svg.as_bytes())?;
-    let summary = format!("{}\n", chart.frame.summary());
+    let summary = format!("{}\n", chart.scene.summary());
     match destination {
         Destination::Stdout => report.note(summary.trim_end()),
         Destination::File(_) => print(&summary)?,
@@ -62,7 +62,7 @@ pub(super) fn run(args: &ChartArgs, report: Report) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Checks that the CSV can be written to `path`, and to nothing else that is read or written.
+/// Checks that the CSV file can be written to `path`, and that `path` is neither the scene nor the figure.
 fn check_csv(path: &Path, figure: &Path, scene: &Path) -> anyhow::Result<()> {
     const OPTION: &str = "--csv";
     if path == Path::new("-") {
@@ -86,8 +86,8 @@ fn check_csv(path: &Path, figure: &Path, scene: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Measures, with a bar.
-fn measure(args: &ChartArgs, scene: &Scene, report: Report) -> anyhow::Result<Chart> {
+/// Measures everything, with a progress bar.
+fn measure(args: &ChartArgs, scene: &Scene, report: Report) -> anyhow::Result<ChartData> {
     const STEPS: f64 = 100.0;
     let bar = report.bar(STEPS as u64, "", "%");
     let progress = |what: &'static str, share: f64| {
@@ -95,13 +95,13 @@ fn measure(args: &ChartArgs, scene: &Scene, report: Report) -> anyhow::Result<Ch
         bar.set_position((share * STEPS) as u64);
     };
     let effort = if args.quick {
-        Effort::Quick
+        ChartEffort::Quick
     } else {
-        Effort::Full
+        ChartEffort::Full
     };
     let name = args.scene.file_stem().unwrap_or(args.scene.as_os_str());
-    // Of what XML cannot hold nothing is left.
+    // XML allows no control characters and neither of these two.
     let is_odd = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
     let name = name.to_string_lossy().replace(is_odd, "\u{fffd}");
-    Ok(Chart::measure(scene, name, effort, &progress)?)
+    Ok(ChartData::measure(scene, name, effort, &progress)?)
 }

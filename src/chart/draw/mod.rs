@@ -1,53 +1,77 @@
-//! The chart as one SVG figure.
+//! The chart as one SVG figure, drawn by plotters.
 
-mod axis;
-mod canvas;
 mod critical;
-mod labels;
+mod plot;
 mod rays;
 mod scene;
 mod style;
 
-use plotters::drawing::DrawingAreaErrorKind;
+use plotters::prelude::*;
 
-use super::{Chart, machine};
-use canvas::BELOW;
-use style::{BLACK, GREY, bold, words};
+use super::data::ChartData;
+use super::machine::machine;
+pub use plot::DrawError;
+use style::{GREY, bold, font, px};
 
-/// The page, in pixels.
-const WIDTH: u32 = 1000;
-const HEIGHT: u32 = 1960;
+/// The size of the page as shown, and where on it the second and the third panel begin, below the title.
+const SIZE: (i32, i32) = (1000, 1850);
+const CRITICAL: i32 = 635;
+const SCENE: i32 = CRITICAL + 580;
 
-/// Where the plots begin.
-const LEFT: f64 = 72.0;
-
-/// Between two panels.
-const APART: f64 = 38.0;
-
-/// Why a figure could not be drawn.
-#[derive(Debug, thiserror::Error)]
-#[error("the figure cannot be drawn: {0}")]
-pub struct DrawError(String);
-
-impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for DrawError {
-    fn from(error: DrawingAreaErrorKind<E>) -> Self {
-        Self(error.to_string())
-    }
-}
-
-/// The figure, as the text of an SVG file.
+/// Draws the figure and returns it as the text of an SVG file.
 ///
 /// # Errors
-/// [`DrawError`]: what the drawing library says.
-pub fn svg(chart: &Chart) -> Result<String, DrawError> {
-    canvas::page((WIDTH, HEIGHT), |canvas| {
-        let middle = 0.5 * f64::from(WIDTH);
+/// [`DrawError`] with the drawing library's error.
+pub fn svg(chart: &ChartData) -> Result<String, DrawError> {
+    let size = (px(SIZE.0) as u32, px(SIZE.1) as u32);
+    let mut svg = String::new();
+    {
+        let page = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+        page.fill(&WHITE)?;
         let title = "Light around a black hole: speed against accuracy";
-        canvas.text(title, (middle, 14.0), bold(21.0, BLACK), BELOW)?;
+        let below = page.margin(px(8), 0, 0, 0).titled(title, bold(21.0))?;
         let made = format!("darkness {} on {}", env!("CARGO_PKG_VERSION"), machine());
-        canvas.text(&made, (middle, 42.0), words(12.0, GREY), BELOW)?;
-        let below = rays::draw(canvas, &chart.rays, (LEFT, 72.0))?;
-        let below = critical::draw(canvas, &chart.critical, (LEFT, below + APART))?;
-        scene::draw(canvas, &chart.frame, (LEFT, below + APART))
-    })
+        let below = below.titled(&made, font(12.0, GREY))?;
+        let (above_scene, scene) = below.split_vertically(px(SCENE));
+        let (rays, critical) = above_scene.split_vertically(px(CRITICAL));
+        rays::draw(&rays, &chart.rays)?;
+        critical::draw(&critical, &chart.critical)?;
+        scene::draw(&scene, &chart.scene)?;
+        page.present()?;
+    }
+    // The first tag gives the size at which the figure is shown, beside that of its coordinates.
+    let drawn = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
+    let shown = format!("width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
+    Ok(svg.replacen(&drawn, &shown, 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chart::critical::CriticalPanel;
+    use crate::chart::rays::RayPanel;
+    use crate::chart::scene::ScenePanel;
+
+    #[test]
+    fn a_figure_without_measurements_is_drawn() {
+        let (points, rounding) = (Vec::new(), Vec::new());
+        let chart = ChartData {
+            rays: RayPanel {
+                points: Vec::new(),
+                baseline_step: 0.1,
+                count: 0,
+            },
+            critical: CriticalPanel { points, rounding },
+            scene: ScenePanel {
+                name: "<&>".to_owned(),
+                size: (1, 1),
+                tolerance: 1e-3,
+                places: 0,
+                compared: 0,
+                points: Vec::new(),
+            },
+        };
+        let svg = svg(&chart).unwrap();
+        assert!(svg.contains("&lt;&amp;&gt; at 1 × 1"));
+    }
 }

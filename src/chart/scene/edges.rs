@@ -1,13 +1,13 @@
-//! Where a method puts the disk's edges, in pixels from where the exact method puts them.
+//! Measures how far each method displaces the disk's edges, in pixels of the picture.
 //!
-//! At angles φ₁ spread evenly over those that the picture shows, for each edge and order, the exact ray that just
-//! meets the edge is found; those outside the picture are left out. Curves tell their own; of a method that steps
-//! rays the ray is sought at which its answer flips: that it is closer to the hole than the edge when it meets the
-//! disk's plane, or that it is not. An order that curves leave out for its thinness is one whose two edges are drawn
-//! on each other: they count as displaced by its thickness.
+//! The exact ray that just meets an edge is found for each edge and order, at angles φ₁ spread evenly over those that
+//! the picture shows. Rays outside the picture are left out. Curves give the displacement directly. For a method that
+//! follows rays, the displaced edge is the ray at which the answer changes between "the ray meets the disk's plane
+//! inside the edge" and "outside". Curves may leave out an order because it is thin: both its edges then count as
+//! displaced by its thickness.
 //!
-//! Rays are asked for their crossings of the edge's radius, as a ray is anywhere; the frames' fixed steps end at the
-//! disk's plane itself, and are spared the interpolation between steps.
+//! Here fixed-step methods interpolate the crossing of the edge's radius between two steps, as for any ray. In frames
+//! they stop at the disk's plane instead and need no interpolation.
 
 use rayon::prelude::*;
 
@@ -16,45 +16,45 @@ use crate::orbit::exact::Exact;
 use crate::orbit::{EventKind, Fate, Orbits, Ray};
 use crate::scene::{Scene, View};
 
-/// The orders looked at: the direct image, two rings, and further ones where the picture needs them, which are
-/// those thicker than its tolerance.
+/// The number of orders measured: the direct image, two rings, and further rings if they are thicker than the picture's
+/// tolerance.
 pub(super) const ORDERS: usize = 6;
 
-/// The orders that are looked at anyway.
+/// The number of orders that are measured whatever their thickness.
 const ALWAYS: u32 = 3;
 
-/// An edge further off than this, in pixels, is lost.
+/// An edge displaced by more than this, in pixels, counts as lost.
 const LOST: f64 = 1e4;
 
-/// Found of one order: displacements in pixels, and how many edges are not found.
+/// The displacements of one order's edges in pixels, and the number of lost edges.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Displacements {
     pub(super) pixels: Vec<f64>,
     pub(super) lost: u64,
 }
 
-/// Where the edges should be.
-pub(super) struct Edges {
+/// The exact positions of the edges.
+pub(super) struct ExactEdges {
     sight: Sight,
-    /// The disk's inner and outer radius.
+    /// The disk's inner and outer radius, in Schwarzschild radii.
     radii: (f64, f64),
-    samples: Vec<Sample>,
+    samples: Vec<EdgeSample>,
 }
 
-/// One place on one edge.
+/// One point of one edge.
 #[derive(Debug, Clone, Copy)]
-struct Sample {
+struct EdgeSample {
     order: u32,
     edge: Edge,
     first: f64,
-    /// `κ − κ_c` of the exact ray.
+    /// `κ − κ_c` of the exact ray, with `κ_c` that of the critical ray.
     height: f64,
-    /// To the other edge, in pixels.
+    /// The distance to the order's other edge, in pixels.
     thickness: f64,
 }
 
-impl Edges {
-    /// At `places` φ₁.
+impl ExactEdges {
+    /// Finds the edges at `places` angles φ₁.
     pub(super) fn new(scene: &Scene, view: &View, places: u32) -> Self {
         let sight = Sight::new(scene, view, scene.tolerance());
         let (low, high) = sight.window.cotangent;
@@ -73,7 +73,7 @@ impl Edges {
                 for (edge, height) in [(Edge::Inner, inner), (Edge::Outer, outer)] {
                     let kappa = sight.critical() + height;
                     if sight.window.kappa.0 <= kappa && kappa <= sight.window.kappa.1 {
-                        samples.push(Sample {
+                        samples.push(EdgeSample {
                             order,
                             edge,
                             first,
@@ -91,10 +91,10 @@ impl Edges {
         }
     }
 
-    /// The displacements, order by order, where `found` tells each edge's; `None` where it is lost.
+    /// Collects the displacements by order. `found` returns the displacement of one sample, or `None` if it is lost.
     fn displacements(
         &self,
-        found: impl Fn(&Sample) -> Option<f64> + Send + Sync,
+        found: impl Fn(&EdgeSample) -> Option<f64> + Send + Sync,
     ) -> Vec<Displacements> {
         let all: Vec<_> = self.samples.par_iter().map(found).collect();
         let mut orders = vec![Displacements::default(); ORDERS];
@@ -109,7 +109,7 @@ impl Edges {
         orders
     }
 
-    /// Of curves.
+    /// Returns the displacements of the edges of `curves`.
     pub(super) fn of_curves(&self, curves: &Isoradials) -> Vec<Displacements> {
         self.displacements(|sample| {
             let is_left_out = curves
@@ -123,7 +123,7 @@ impl Edges {
         })
     }
 
-    /// Of a method that follows rays.
+    /// Returns the displacements of the edges as a method that follows rays sees them.
     pub(super) fn of_orbits(&self, orbits: &dyn Orbits) -> Vec<Displacements> {
         self.displacements(|sample| {
             let height = self.flip(orbits, sample)?;
@@ -132,16 +132,16 @@ impl Edges {
         })
     }
 
-    /// The height at which the method's answer flips, to a thousandth of its distance from the exact one: between two
-    /// heights that the search outwards from there has found it to differ at.
-    fn flip(&self, orbits: &dyn Orbits, sample: &Sample) -> Option<f64> {
+    /// Finds the height at which the method's answer changes, to a thousandth of its distance from the exact height.
+    /// The search steps outwards from the exact height until the answer differs, and then bisects.
+    fn flip(&self, orbits: &dyn Orbits, sample: &EdgeSample) -> Option<f64> {
         let exact = sample.height;
         let is_inside = self.is_inside(orbits, sample, exact)?;
-        // Inside there, the edge is at a smaller height.
+        // Where the answer is "inside", the displaced edge is at a smaller height.
         let away = if is_inside { -1.0 } else { 1.0 };
         let at = |distance: f64| exact + away * distance;
         let mut near = 0.0;
-        // One unit in the last place of the ray's own slope.
+        // One unit in the last place of the ray's slope.
         let mut far = f64::EPSILON * (self.sight.critical() + exact).abs().max(1e-6);
         while self.is_inside(orbits, sample, at(far))? == is_inside {
             if self.sight.pixels((exact, at(far))) > LOST {
@@ -161,9 +161,9 @@ impl Edges {
         Some(at(far))
     }
 
-    /// Whether the ray of `height` is closer to the hole than the edge when it meets the disk's plane; `None` where the
-    /// method does not say.
-    fn is_inside(&self, orbits: &dyn Orbits, sample: &Sample, height: f64) -> Option<bool> {
+    /// Returns whether the ray at `height` is inside the edge when it meets the disk's plane, or `None` if the method
+    /// fails.
+    fn is_inside(&self, orbits: &dyn Orbits, sample: &EdgeSample, height: f64) -> Option<bool> {
         let slope = self.sight.slope_scale * (self.sight.critical() + height);
         let ray = Ray::new(self.sight.u0, slope).ok()?;
         let radius = match sample.edge {
@@ -178,7 +178,7 @@ impl Edges {
         };
         Some(match (of(EventKind::Inbound), of(EventKind::Outbound)) {
             (Some(enter), Some(leave)) if enter < leave => enter < angle && angle < leave,
-            // Out first: inside before that, and again after it is back in.
+            // It crosses outwards first: it is inside before that crossing and after the inward one.
             (Some(enter), Some(leave)) => angle < leave || enter < angle,
             (Some(enter), None) => enter < angle,
             (None, Some(leave)) => angle < leave,
@@ -201,10 +201,10 @@ mod tests {
     }
 
     #[test]
-    fn edges_are_found_as_well_as_the_method_finds_rays() {
+    fn edges_are_as_accurate_as_the_method() {
         let scene = Scene::builtin("classic").unwrap();
         let view = View::new(&scene);
-        let edges = Edges::new(&scene, &view, 9);
+        let edges = ExactEdges::new(&scene, &view, 9);
         let of = |orbits: &dyn Orbits| edges.of_orbits(orbits);
         let adaptive = of(&Adaptive::default());
         assert_eq!(adaptive[0].pixels.len(), 18);
@@ -217,11 +217,11 @@ mod tests {
     }
 
     #[test]
-    fn an_order_left_out_is_off_by_its_thickness() {
+    fn an_order_left_out_is_displaced_by_its_thickness() {
         let scene = Scene::builtin("classic").unwrap();
         let scene = scene.with_size(64, 36).unwrap();
         let view = View::new(&scene);
-        let edges = Edges::new(&scene, &view, 9);
+        let edges = ExactEdges::new(&scene, &view, 9);
         let curves = Isoradials::new(&Sight::new(&scene, &view, 1.0), &Exact);
         let left_out = curves.left_out().unwrap();
         let order = &edges.of_curves(&curves)[left_out.order as usize];

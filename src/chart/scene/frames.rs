@@ -1,22 +1,40 @@
-//! How many pixels of a frame are wrong, against each pixel's own exact ray.
+//! Counts the wrong pixels of a frame, compared with each pixel's own exact ray.
 
 use rayon::prelude::*;
 
 use super::super::methods::Stepper;
+use crate::isoradial::Isoradials;
 use crate::orbit::OrbitError;
 use crate::orbit::exact::Exact;
-use crate::render::mask::WHITE;
+use crate::render::mask::{self, WHITE};
 use crate::render::{RenderError, pixelwise};
 use crate::scene::{Scene, View};
 
-/// What the pixels of some rows should be.
-pub(super) struct Truth {
+/// Renders a frame with hard edges from `curves`, on all threads of the current rayon pool.
+pub(super) fn from_curves(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> {
+    let (width, height) = (view.width(), view.height());
+    let bytes = u64::from(width) * u64::from(height);
+    let memory = || RenderError::Memory {
+        width,
+        height,
+        bytes,
+    };
+    let length = usize::try_from(bytes).map_err(|_| memory())?;
+    let mut pixels = Vec::new();
+    pixels.try_reserve_exact(length).map_err(|_| memory())?;
+    pixels.resize(length, 0);
+    mask::render_into(view, curves, &mut pixels, width as usize)?;
+    Ok(pixels)
+}
+
+/// The exact pixels of some rows.
+pub(super) struct ExactPixels {
     rows: Vec<(u32, Vec<u8>)>,
 }
 
-impl Truth {
-    /// The rows of `scene` by the exact method, on all threads: all of them, or as many, evenly spread, as have `most`
-    /// pixels together.
+impl ExactPixels {
+    /// Computes rows of `scene` with the exact method, on all threads: every row, or evenly spread rows with at most
+    /// `most` pixels in total, but at least one row.
     pub(super) fn new(scene: &Scene, view: &View, most: u64) -> Result<Self, RenderError> {
         let count = (most / u64::from(view.width())).clamp(1, u64::from(view.height()));
         let height = u64::from(view.height());
@@ -36,12 +54,12 @@ impl Truth {
         Ok(Self { rows: rows? })
     }
 
-    /// How many pixels are known.
+    /// Returns the number of pixels computed.
     pub(super) fn pixels(&self) -> u64 {
         self.rows.iter().map(|(_, row)| row.len() as u64).sum()
     }
 
-    /// How many pixels of `frame` are wrong, of how many known.
+    /// Counts the wrong pixels of `frame`, and the pixels compared.
     pub(super) fn wrong_in(&self, frame: &[u8], view: &View) -> (u64, u64) {
         let width = view.width() as usize;
         let wrong = self.rows.iter().map(|(j, truth)| {
@@ -52,8 +70,8 @@ impl Truth {
         (wrong.sum(), self.pixels())
     }
 
-    /// How many pixels a method that steps each ray gets wrong, of how many: on as many of the rows, evenly spread, as
-    /// `budget` pixels allow.
+    /// Counts the wrong pixels of a method that steps each ray, and the pixels compared: evenly spread rows with at
+    /// most `budget` pixels in total, but at least one row.
     pub(super) fn wrong_of(
         &self,
         scene: &Scene,
@@ -74,7 +92,8 @@ impl Truth {
     }
 }
 
-/// `count` pixels spread evenly over the picture, by the same sequence on every machine.
+/// Returns `count` pixels spread evenly over the picture, the same on every machine. They follow the additive sequence
+/// with steps 1/g and 1/g², where g³ = g + 1.
 pub(super) fn sample(view: &View, count: u32) -> Vec<(u32, u32)> {
     let place = |k: u32, step: f64, side: u32| {
         let x = 0.5 + f64::from(k) * step;
@@ -90,7 +109,7 @@ pub(super) fn sample(view: &View, count: u32) -> Vec<(u32, u32)> {
         .collect()
 }
 
-/// How many of some pixels see the disk.
+/// Counts the pixels that see the disk, out of `pixels`.
 pub(super) fn white(scene: &Scene, view: &View, stepper: &Stepper, pixels: &[(u32, u32)]) -> f64 {
     let seen = pixels
         .iter()
@@ -101,18 +120,17 @@ pub(super) fn white(scene: &Scene, view: &View, stepper: &Stepper, pixels: &[(u3
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::isoradial::{Isoradials, Sight};
-    use crate::render::mask;
+    use crate::isoradial::Sight;
 
     #[test]
     fn a_right_frame_has_no_wrong_pixel_and_a_coarse_method_has() {
         let scene = Scene::builtin("classic").unwrap();
         let scene = scene.with_size(160, 90).unwrap();
         let view = View::new(&scene);
-        let truth = Truth::new(&scene, &view, 160 * 30).unwrap();
+        let truth = ExactPixels::new(&scene, &view, 160 * 30).unwrap();
         assert_eq!(truth.pixels(), 160 * 30);
         let curves = Isoradials::new(&Sight::new(&scene, &view, 1e-3), &Exact);
-        let mut frame = mask::render(&view, &curves).unwrap();
+        let mut frame = from_curves(&view, &curves).unwrap();
         assert_eq!(truth.wrong_in(&frame, &view), (0, 160 * 30));
         let (row, _) = truth.rows[3];
         frame[row as usize * 160 + 5] ^= WHITE;

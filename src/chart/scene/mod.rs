@@ -1,68 +1,69 @@
-//! The third panel: what a scene's frame costs, and how right it is.
+//! The third panel: the time and the error of a scene's frame.
 //!
-//! Tables and the exact method draw isoradial curves, to several tolerances, and fill the frame between them;
-//! the integrators step every pixel's ray. Asked of both: where each edge of the disk is, order by order, in pixels
-//! from where it should be (`edges.rs`), and how many pixels are wrong (`frames.rs`). Times are of whole frames on
-//! one thread: curves and frame together, or the time of an even sample of pixels for those that step each.
+//! Tables and the exact method build isoradial curves, at several tolerances, and a frame is rendered from the
+//! curves. The integrators step along every pixel's ray. Measured for both are the displacement of each edge of the
+//! disk, by order (`edges.rs`), and the number of wrong pixels (`frames.rs`). Times are those of a whole frame on one
+//! thread: curves and frame together, or for the integrators the time of an evenly spread sample of pixels, scaled to
+//! the frame.
 
 mod edges;
+mod frame_methods;
 mod frames;
-mod ways;
-mod words;
 
 use core::time::Duration;
 
 use super::interleaved::{Contender, rounds};
-use super::methods::{Method, Tables};
-use super::{ChartError, Effort, Measurement, Panel, Quantiles, Time};
-use crate::render::mask;
-use crate::scene::{self, View};
-use edges::{Displacements, Edges, ORDERS};
-use frames::Truth;
-use ways::{Entry, Way, entries, sources};
-use words::{grouped, two_digits};
+use super::measurement::{
+    ChartEffort, ChartError, ComparedMethod, Measurement, Panel, Quantiles, Time,
+};
+use super::methods::Tables;
+use super::number_format::{grouped, two_digits};
+use crate::scene::{Scene, View};
+use edges::{Displacements, ExactEdges, ORDERS};
+use frame_methods::{FrameMethod, FrameSetting, settings, sources};
+use frames::ExactPixels;
 
-/// What is measured of a scene's frame.
+/// The measurements of a scene's frame.
 #[derive(Debug)]
-pub struct Frame {
-    /// What the scene is called.
+pub struct ScenePanel {
+    /// The scene's name.
     pub name: String,
     /// The picture's width and height.
     pub size: (u32, u32),
-    /// What its edges may be off by, in pixels.
+    /// The scene's tolerance: the largest displacement allowed for an edge, in pixels.
     pub tolerance: f64,
-    /// At how many angles each edge was looked at.
+    /// The number of angles at which each edge was measured.
     pub places: u32,
-    /// How many pixels were compared with exact rays at most.
+    /// The number of pixels compared with exact rays; for slow methods fewer are.
     pub compared: u64,
     /// Every method at every setting.
-    pub points: Vec<Point>,
+    pub points: Vec<FramePoint>,
 }
 
 /// One method at one setting.
 #[derive(Debug)]
-pub struct Point {
+pub struct FramePoint {
     /// The method.
-    pub method: Method,
+    pub method: ComparedMethod,
     /// The time of a frame, in milliseconds.
     pub milliseconds: f64,
-    /// Nodes of the curves, where there are any.
+    /// The number of the curves' nodes, for methods that build curves.
     pub nodes: Option<usize>,
-    /// Bytes of the table that they were drawn from.
+    /// The size in bytes of the table that the curves were built from, if any.
     pub table_bytes: Option<usize>,
-    /// What was found of each order.
+    /// The displacements of each order's edges.
     pub orders: [Measurement; ORDERS],
-    /// The pixels: how many are wrong (failures) of those compared (count).
+    /// The number of wrong pixels (`failures`) and of pixels compared (`count`).
     pub pixels: Measurement,
 }
 
-impl Point {
-    /// Which share of the pixels compared is wrong.
+impl FramePoint {
+    /// Returns the share of the compared pixels that are wrong.
     pub fn wrong_share(&self) -> f64 {
         self.pixels.failures as f64 / self.pixels.count.max(1) as f64
     }
 
-    /// The largest displacement of any edge, in pixels; infinite where one is lost.
+    /// Returns the largest displacement of any edge in pixels, or infinity if an edge is lost.
     pub fn displacement(&self) -> f64 {
         self.orders.iter().fold(0.0, |most: f64, order| {
             if order.failures > 0 {
@@ -73,25 +74,25 @@ impl Point {
     }
 }
 
-/// How much may be done.
-struct Bounds {
+/// How much is measured.
+struct SceneEffort {
     repetitions: usize,
-    /// For all repetitions.
+    /// The time after which no further repetition starts.
     time: Duration,
-    /// Pixels whose time is taken of those methods that step each.
+    /// The number of pixels on which stepping methods are timed.
     sampled_pixels: u32,
-    /// Pixels to know the truth of, at most.
+    /// The largest number of pixels to compute exactly.
     compared_pixels: u64,
-    /// At how many φ₁ each edge is looked at.
+    /// The number of angles φ₁ at which each edge is measured.
     places: u32,
-    /// Seconds of one thread for counting the wrong pixels of one setting.
+    /// Seconds of one thread for counting one setting's wrong pixels.
     seconds: f64,
 }
 
-impl Bounds {
-    fn of(effort: Effort) -> Self {
+impl SceneEffort {
+    fn of(effort: ChartEffort) -> Self {
         match effort {
-            Effort::Quick => Self {
+            ChartEffort::Quick => Self {
                 repetitions: 5,
                 time: Duration::from_secs(3),
                 sampled_pixels: 1024,
@@ -99,7 +100,7 @@ impl Bounds {
                 places: 129,
                 seconds: 0.15,
             },
-            Effort::Full => Self {
+            ChartEffort::Full => Self {
                 repetitions: 21,
                 time: Duration::from_secs(40),
                 sampled_pixels: 8192,
@@ -111,36 +112,37 @@ impl Bounds {
     }
 }
 
-impl Frame {
-    /// Measures the frame of `scene`; `progress` is told which share is done. `baseline_step` is RK4's for the ratios.
+impl ScenePanel {
+    /// Measures the frame of `scene`. `baseline_step` is the step of RK4 in `ratio_to_rk4`. `progress` receives the
+    /// share that is done, from 0 to 1.
     ///
     /// # Errors
-    /// [`ChartError`]
+    /// [`ChartError`] if a frame does not fit into memory, or a thread cannot be started.
     pub fn measure(
-        scene: &scene::Scene,
+        scene: &Scene,
         name: String,
         tables: &Tables,
         baseline_step: f64,
-        effort: Effort,
+        effort: ChartEffort,
         progress: &(dyn Fn(f64) + Sync),
     ) -> Result<Self, ChartError> {
-        let bounds = Bounds::of(effort);
+        let bounds = SceneEffort::of(effort);
         let view = View::new(scene);
         let sources = sources(tables);
-        let entries = entries(scene, &view, &sources, baseline_step, effort);
+        let settings = settings(scene, &view, &sources, baseline_step, effort);
         let one_thread = rayon::ThreadPoolBuilder::new()
             .num_threads(1)
             .build()
             .map_err(|error| ChartError::Threads(error.to_string()))?;
-        let times = one_thread.install(|| time(scene, &view, &entries, &bounds, progress));
-        let truth = Truth::new(scene, &view, bounds.compared_pixels)?;
+        let times = one_thread.install(|| time(scene, &view, &settings, &bounds, progress));
+        let truth = ExactPixels::new(scene, &view, bounds.compared_pixels)?;
         progress(0.6);
-        let edges = Edges::new(scene, &view, bounds.places);
-        let mut points = Vec::with_capacity(entries.len());
-        for (i, (entry, time)) in entries.iter().zip(times).enumerate() {
+        let edges = ExactEdges::new(scene, &view, bounds.places);
+        let mut points = Vec::with_capacity(settings.len());
+        for (i, (setting, time)) in settings.iter().zip(times).enumerate() {
             let budget = (bounds.seconds * 1e9 / time.nanoseconds.max(1e-3)) as u64;
-            points.push(point(entry, time, scene, &view, &edges, &truth, budget)?);
-            progress(0.6 + 0.4 * (i + 1) as f64 / entries.len() as f64);
+            points.push(point(setting, time, scene, &view, &edges, &truth, budget)?);
+            progress(0.6 + 0.4 * (i + 1) as f64 / settings.len() as f64);
         }
         Ok(Self {
             name,
@@ -152,21 +154,23 @@ impl Frame {
         })
     }
 
-    /// The smallest table, and the fewest nodes of curves drawn from it, with which no edge is off by more than the
-    /// scene's tolerance.
-    pub fn least(&self) -> Option<&Point> {
+    /// Returns the measurement with the smallest table, and then the fewest nodes, that displaces no edge by more than
+    /// the scene's tolerance.
+    pub fn least(&self) -> Option<&FramePoint> {
         self.points
             .iter()
             .filter(|point| {
                 matches!(
                     point.method,
-                    Method::TableDraft | Method::TableStandard | Method::TableFine
+                    ComparedMethod::TableDraft
+                        | ComparedMethod::TableStandard
+                        | ComparedMethod::TableFine
                 ) && point.displacement() <= self.tolerance
             })
             .min_by_key(|point| (point.table_bytes, point.nodes))
     }
 
-    /// What is enough for this scene, as measured, in one sentence.
+    /// Describes in one sentence the smallest table and curves that meet the scene's tolerance, as measured.
     pub fn summary(&self) -> String {
         let (name, asked) = (&self.name, self.tolerance);
         let mut orders = self.points.iter().flat_map(|point| &point.orders);
@@ -175,16 +179,17 @@ impl Frame {
         }
         let Some(point) = self.least() else {
             return format!(
-                "{name}: with no table are all edges right to the {asked:?} pixels asked for; exact angles are needed"
+                "{name}: no table keeps every edge within {asked:?} pixels; exact angles are needed"
             );
         };
         let table = match point.method {
-            Method::TableDraft => "draft",
-            Method::TableFine => "fine",
+            ComparedMethod::TableDraft => "draft",
+            ComparedMethod::TableFine => "fine",
             _ => "standard",
         };
         format!(
-            "{name}: the {table} table ({} bytes) and {} curve nodes are enough: no edge is off by more than {} pixels (asked: {asked:?})",
+            "{name}: the {table} table ({} bytes) and {} curve nodes suffice: no edge is displaced by more than \
+             {} pixels (allowed: {asked:?})",
             grouped(point.table_bytes.unwrap_or_default()),
             grouped(point.nodes.unwrap_or_default()),
             two_digits(point.displacement()),
@@ -192,26 +197,28 @@ impl Frame {
     }
 }
 
-/// Times every entry: nanoseconds a pixel, and the ratio to the first.
+/// Times every setting: nanoseconds per pixel, and the ratio to the first setting.
 fn time(
-    scene: &scene::Scene,
+    scene: &Scene,
     view: &View,
-    entries: &[Entry<'_>],
-    bounds: &Bounds,
+    settings: &[FrameSetting<'_>],
+    bounds: &SceneEffort,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Vec<Time> {
     let sample = frames::sample(view, bounds.sampled_pixels);
     let pixels = f64::from(view.width()) * f64::from(view.height());
-    let mut contenders: Vec<_> = entries
+    let mut contenders: Vec<_> = settings
         .iter()
-        .map(|entry| Contender {
-            name: &entry.setting,
-            run: match &entry.way {
-                Way::Curves { angles, sight } => Box::new(move || {
-                    let frame = mask::render(view, &angles.draw(sight)).unwrap_or_default();
+        .map(|setting| Contender {
+            name: &setting.setting,
+            run: match &setting.renders {
+                FrameMethod::Curves { angles, sight } => Box::new(move || {
+                    let curves = angles.build(sight);
+                    let frame = frames::from_curves(view, &curves).unwrap_or_default();
                     frame.first().copied().map_or(f64::NAN, f64::from)
-                }) as Box<dyn FnMut() -> f64>,
-                Way::Steps(stepper) => {
+                })
+                    as Box<dyn FnMut() -> f64>,
+                FrameMethod::Steps(stepper) => {
                     let sample = &sample;
                     Box::new(move || frames::white(scene, view, stepper, sample))
                 }
@@ -228,69 +235,64 @@ fn time(
             progress(0.5 * done / (bounds.repetitions + 1) as f64);
         },
     );
-    // The baseline's rounds are of the sample; a frame of curves has all pixels.
-    let items = |entry: &Entry<'_>| match entry.way {
-        Way::Curves { .. } => pixels,
-        Way::Steps(_) => sample.len() as f64,
+    // Stepping methods, the baseline among them, run on the sample; curves render all pixels.
+    let items = |setting: &FrameSetting<'_>| match setting.renders {
+        FrameMethod::Curves { .. } => pixels,
+        FrameMethod::Steps(_) => sample.len() as f64,
     };
-    entries
+    settings
         .iter()
         .enumerate()
-        .map(|(i, entry)| Time {
-            nanoseconds: times.median(i) * 1e9 / items(entry),
-            ratio_to_rk4: times.ratio(i, 0) * items(entry) / sample.len() as f64,
+        .map(|(i, setting)| {
+            let ratio = times.ratio(i, 0) * items(setting) / sample.len() as f64;
+            Time::new(times.median(0) * 1e9 / sample.len() as f64, ratio)
         })
         .collect()
 }
 
-/// Everything else about an entry. `budget` is how many pixels may be stepped.
+/// Measures the errors of one setting. `budget` is the number of pixels that may be stepped.
 fn point(
-    entry: &Entry<'_>,
+    setting: &FrameSetting<'_>,
     time: Time,
-    scene: &scene::Scene,
+    scene: &Scene,
     view: &View,
-    edges: &Edges,
-    truth: &Truth,
+    edges: &ExactEdges,
+    truth: &ExactPixels,
     budget: u64,
-) -> Result<Point, ChartError> {
-    let mut setting = entry.setting.clone();
+) -> Result<FramePoint, ChartError> {
+    let mut words = setting.setting.clone();
     let mut nodes = None;
-    let (displacements, (wrong, compared)) = match &entry.way {
-        Way::Curves { angles, sight } => {
-            let curves = angles.draw(sight);
+    let (displacements, (wrong, compared)) = match &setting.renders {
+        FrameMethod::Curves { angles, sight } => {
+            let curves = angles.build(sight);
             nodes = Some(curves.nodes());
-            let words = format!("nodes={} bytes={}", curves.nodes(), curves.bytes());
-            let table = entry
-                .table_bytes
-                .map(|bytes| format!("table-bytes={bytes}"));
-            setting = [Some(setting), Some(words), table]
-                .into_iter()
-                .flatten()
-                .collect::<Vec<_>>()
-                .join(" ");
-            let frame = mask::render(view, &curves)?;
+            words = format!("{words} nodes={} bytes={}", curves.nodes(), curves.bytes());
+            if let Some(bytes) = setting.table_bytes {
+                words = format!("{words} table-bytes={bytes}");
+            }
+            let frame = frames::from_curves(view, &curves)?;
             (edges.of_curves(&curves), truth.wrong_in(&frame, view))
         }
-        Way::Steps(stepper) => (
+        FrameMethod::Steps(stepper) => (
             edges.of_orbits(stepper.orbits()),
             truth.wrong_of(scene, view, stepper, budget),
         ),
     };
-    let row = |words: String, error, failures, count| Measurement {
+    let row = |order: String, error, failures, count| Measurement {
         panel: Panel::Scene,
-        method: entry.method,
-        setting: format!("{setting} {words}"),
+        method: setting.method,
+        setting: format!("{words} {order}"),
         time: Some(time),
         error,
         failures,
         count,
     };
     let pixels = f64::from(view.width()) * f64::from(view.height());
-    Ok(Point {
-        method: entry.method,
+    Ok(FramePoint {
+        method: setting.method,
         milliseconds: time.nanoseconds * pixels * 1e-6,
         nodes,
-        table_bytes: entry.table_bytes,
+        table_bytes: setting.table_bytes,
         pixels: row("order=all".into(), None, wrong, compared),
         orders: core::array::from_fn(|order| {
             let Displacements { pixels, lost } =

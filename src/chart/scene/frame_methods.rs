@@ -1,82 +1,85 @@
-//! The ways to draw a frame, each at its settings.
+//! The methods that render a frame, at every setting that is measured.
 
-use super::super::Effort;
-use super::super::methods::{Method, Stepper, Tables};
+use super::super::measurement::{ChartEffort, ComparedMethod};
+use super::super::methods::{Stepper, Tables};
 use crate::isoradial::{Isoradials, Sight};
 use crate::orbit::exact::Exact;
 use crate::orbit::path::SweptAngles;
 use crate::scene::{Scene, View};
 
-/// What the curves are asked for, in pixels, beside the scene's own tolerance.
+/// The tolerances of curves, in pixels, that are measured besides the scene's own.
 const TOLERANCES: [f64; 5] = [1.0, 0.1, 0.01, 1e-3, 1e-4];
 
-/// Pictures with more pixels than this are drawn with their own tolerance only.
+/// Pictures with more pixels than this are rendered with the scene's own tolerance only.
 const MANY_PIXELS: u64 = 1 << 25;
 
-/// A way to draw the frame, with its knob set.
-pub(super) enum Way<'a> {
+/// How a frame is rendered.
+pub(super) enum FrameMethod<'a> {
+    /// From isoradial curves.
     Curves {
-        angles: &'a dyn Curves,
+        angles: &'a dyn BuildCurves,
         sight: Sight,
     },
+    /// By stepping along every pixel's ray.
     Steps(Stepper),
 }
 
-/// A method's swept angles, to draw curves from.
-pub(super) trait Curves: Sync {
-    fn draw(&self, sight: &Sight) -> Isoradials;
+/// Swept angles from which curves can be built.
+pub(super) trait BuildCurves: Sync {
+    /// Builds the curves.
+    fn build(&self, sight: &Sight) -> Isoradials;
 }
 
-impl<T: SweptAngles> Curves for T {
-    fn draw(&self, sight: &Sight) -> Isoradials {
+impl<T: SweptAngles> BuildCurves for T {
+    fn build(&self, sight: &Sight) -> Isoradials {
         Isoradials::new(sight, self)
     }
 }
 
-/// What draws curves: the method, its words for the CSV, the bytes of its table.
-pub(super) struct Source<'a> {
-    pub(super) method: Method,
+/// A method whose swept angles curves are built from, and the size of its table in bytes, if it has one.
+pub(super) struct CurveSource<'a> {
+    pub(super) method: ComparedMethod,
     pub(super) table_bytes: Option<usize>,
-    pub(super) angles: Box<dyn Curves + Send + 'a>,
+    pub(super) angles: Box<dyn BuildCurves + Send + 'a>,
 }
 
-/// A setting to be measured.
-pub(super) struct Entry<'a> {
-    pub(super) method: Method,
-    pub(super) way: Way<'a>,
+/// A method at one setting.
+pub(super) struct FrameSetting<'a> {
+    pub(super) method: ComparedMethod,
+    pub(super) renders: FrameMethod<'a>,
     pub(super) setting: String,
     pub(super) table_bytes: Option<usize>,
 }
 
-/// All that draws curves.
-pub(super) fn sources(tables: &Tables) -> Vec<Source<'_>> {
-    let mut all: Vec<Source<'_>> = Vec::new();
+/// Lists the methods that curves are built from.
+pub(super) fn sources(tables: &Tables) -> Vec<CurveSource<'_>> {
+    let mut all: Vec<CurveSource<'_>> = Vec::new();
     for (method, table) in tables.tables() {
-        all.push(Source {
+        all.push(CurveSource {
             method: *method,
             table_bytes: Some(table.bytes().len()),
             angles: Box::new(table.lookup()),
         });
     }
-    all.push(Source {
-        method: Method::Exact,
+    all.push(CurveSource {
+        method: ComparedMethod::Exact,
         table_bytes: None,
         angles: Box::new(Exact),
     });
     all
 }
 
-/// Every method at every setting; first the baseline.
-pub(super) fn entries<'a>(
+/// Lists every method at every setting, the baseline first.
+pub(super) fn settings<'a>(
     scene: &Scene,
     view: &View,
-    sources: &'a [Source<'_>],
+    sources: &'a [CurveSource<'_>],
     baseline_step: f64,
-    effort: Effort,
-) -> Vec<Entry<'a>> {
+    effort: ChartEffort,
+) -> Vec<FrameSetting<'a>> {
     let mut steppers = vec![Stepper::rk4(baseline_step)];
     steppers.extend(match effort {
-        Effort::Quick => vec![
+        ChartEffort::Quick => vec![
             Stepper::euler(0.01),
             Stepper::euler(1e-3),
             Stepper::rk4(0.2),
@@ -84,7 +87,7 @@ pub(super) fn entries<'a>(
             Stepper::adaptive(1e-3),
             Stepper::adaptive(1e-9),
         ],
-        Effort::Full => vec![
+        ChartEffort::Full => vec![
             Stepper::euler(0.1),
             Stepper::euler(0.03),
             Stepper::euler(0.01),
@@ -104,10 +107,10 @@ pub(super) fn entries<'a>(
     });
     let mut all: Vec<_> = steppers
         .into_iter()
-        .map(|stepper| Entry {
+        .map(|stepper| FrameSetting {
             method: stepper.method(),
             setting: stepper.setting(),
-            way: Way::Steps(stepper),
+            renders: FrameMethod::Steps(stepper),
             table_bytes: None,
         })
         .collect();
@@ -119,9 +122,9 @@ pub(super) fn entries<'a>(
     tolerances.dedup();
     for source in sources {
         for &tolerance in &tolerances {
-            all.push(Entry {
+            all.push(FrameSetting {
                 method: source.method,
-                way: Way::Curves {
+                renders: FrameMethod::Curves {
                     angles: &*source.angles,
                     sight: Sight::new(scene, view, tolerance),
                 },

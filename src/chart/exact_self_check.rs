@@ -1,13 +1,14 @@
-//! The exact method against itself: one integral, and the same in two parts.
+//! The exact method's own error: one elliptic integral against the sum of two over the same range.
 
 use crate::orbit::exact::Exact;
 use crate::orbit::invariants::{Orbit, OrbitPoint};
 use crate::orbit::path::SweptAngles;
 use crate::orbit::turning_u;
 
-/// The exact angle from the start of `orbit` to `to`, straight or over the turning point, as the sum of two parts. They
-/// meet half way (in u) to where the ray goes first: `to`, or the turning point.
-pub(super) fn in_two_parts(orbit: &Orbit, to: OrbitPoint, over_turning_point: bool) -> f64 {
+/// Computes the exact angle from the start of `orbit` to `to` as a sum of two integrals. The path to `to` is direct, or
+/// leads over the turning point. The two integrals meet halfway, in u = 1/r, to where the ray goes first: `to` or the
+/// turning point.
+pub(super) fn angle_in_two_parts(orbit: &Orbit, to: OrbitPoint, over_turning_point: bool) -> f64 {
     let start = orbit.start;
     let first = if over_turning_point {
         turning_u(orbit)
@@ -21,7 +22,7 @@ pub(super) fn in_two_parts(orbit: &Orbit, to: OrbitPoint, over_turning_point: bo
             Exact.direct(orbit, from, to)
         }
     };
-    // Where there is no room for a middle, the whole is all there is.
+    // Without a double between the two ends, one integral covers the whole range.
     match orbit.point_at(0.5 * (start.u + first)) {
         Some(middle) => Exact.direct(orbit, start, middle) + rest(middle),
         None => rest(start),

@@ -1,0 +1,62 @@
+//! Everything the chart shows, measured in one run.
+
+use super::critical::CriticalPanel;
+use super::measurement::{ChartEffort, ChartError, ChartProgress, Measurement};
+use super::methods::Tables;
+use super::rays::RayPanel;
+use super::scene::ScenePanel;
+use crate::scene::Scene;
+
+/// The measurements of all three panels.
+#[derive(Debug)]
+pub struct ChartData {
+    /// Time and error of one swept angle.
+    pub rays: RayPanel,
+    /// Error near the critical ray.
+    pub critical: CriticalPanel,
+    /// Time and error of a scene's frame.
+    pub scene: ScenePanel,
+}
+
+impl ChartData {
+    /// Measures all panels. The third one shows `scene`, which the figure calls `name`.
+    ///
+    /// # Errors
+    /// [`ChartError`] if a table, a thread or a frame cannot be made.
+    pub fn measure(
+        scene: &Scene,
+        name: String,
+        effort: ChartEffort,
+        progress: &ChartProgress<'_>,
+    ) -> Result<Self, ChartError> {
+        progress("generating tables", 0.0);
+        let tables = Tables::new(effort)?;
+        let rays = RayPanel::measure(&tables, effort, &|share| {
+            progress("timing rays", 0.05 + 0.4 * share);
+        });
+        let critical = CriticalPanel::measure(&tables, effort, &|share| {
+            progress("near-critical rays", 0.45 + 0.05 * share);
+        });
+        let step = rays.baseline_step;
+        let scene = ScenePanel::measure(scene, name, &tables, step, effort, &|share| {
+            progress("frames", 0.5 + 0.5 * share);
+        })?;
+        Ok(Self {
+            rays,
+            critical,
+            scene,
+        })
+    }
+
+    /// Returns all measured points, panel by panel.
+    pub fn measurements(&self) -> impl Iterator<Item = &Measurement> {
+        self.rays
+            .points
+            .iter()
+            .chain(self.critical.points.iter().map(|point| &point.measurement))
+            .chain(self.scene.points.iter().flat_map(|point| {
+                let orders = point.orders.iter().filter(|order| order.count > 0);
+                orders.chain([&point.pixels])
+            }))
+    }
+}
