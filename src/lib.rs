@@ -1,8 +1,11 @@
 //! **darkness** renders what a black hole does to the light of its accretion disk.
 
+#[cfg(feature = "chart")]
 pub mod chart;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod isoradial;
+#[cfg_attr(not(feature = "cli"), allow(dead_code))]
 mod lanes;
 pub mod orbit;
 pub mod output;

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use memmap2::Mmap;
 
-use super::Misuse;
+use super::misuse::misuse;
 use super::progress::{Report, warn};
 use crate::orbit::integrate::Adaptive;
 use crate::table::{self, Lookup, Memory, Metadata, Spec, Table, TableError};
@@ -120,10 +120,10 @@ impl MethodArgs {
     /// user names a file: only the default one is.
     pub(super) fn check(&self, needed: Option<&'static str>) -> anyhow::Result<Checked> {
         if self.integrate_tolerance.is_some() && self.method != MethodName::Integrate {
-            return Err(Misuse::ToleranceUnused.into());
+            return Err(misuse("--integrate-tolerance needs --method integrate"));
         }
         if self.no_mmap && self.method != MethodName::Table {
-            return Err(Misuse::MmapUnused.into());
+            return Err(misuse("--no-mmap needs --method table"));
         }
         let method = match self.method {
             MethodName::Exact => Method::Exact,

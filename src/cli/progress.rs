@@ -1,4 +1,4 @@
-//! What the user is told on the standard error: notes, warnings, and a bar for what takes long.
+//! Messages on the standard error: notes, warnings and progress.
 
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
@@ -10,29 +10,28 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressState, 
 
 use crate::quotation::printable;
 
-/// The standard error, as the user wants it.
+/// Messages on the standard error.
 ///
-/// Nothing here can fail: where the standard error takes no more, the work goes on without words (`eprintln!` would
-/// panic).
+/// Nothing here fails: if the standard error cannot be written, the work continues silently (`eprintln!` would panic).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Report {
     quiet: bool,
 }
 
 impl Report {
-    /// With `quiet`, nothing is told but what is [wrong](warn).
+    /// With `quiet`, only [warnings](warn) are printed.
     pub(super) fn new(quiet: bool) -> Self {
         Self { quiet }
     }
 
-    /// Says what happens or has been done.
+    /// Prints what happens or has been done.
     pub(super) fn note(self, message: impl Display) {
         if !self.quiet {
             let _ = writeln!(io::stderr(), "{}", readable(&message));
         }
     }
 
-    /// The progress of `total` frames of so many pixels.
+    /// The progress of `total` frames, each of `pixels` pixels.
     pub(super) fn frames(self, how: ProgressKind, total: u64, pixels: u64) -> FrameProgress {
         let kind = match how {
             _ if self.quiet => ProgressKind::None,
@@ -46,7 +45,7 @@ impl Report {
             kind,
             bar,
             megapixels: pixels as f64 / 1e6,
-            state: Mutex::new(Shown {
+            state: Mutex::new(FrameCount {
                 start: now,
                 told: now,
                 total,
@@ -55,8 +54,7 @@ impl Report {
         }
     }
 
-    /// A bar of `total` steps, each of them a `unit`, which vanishes when it is dropped. Nothing is drawn where the
-    /// standard error is no terminal.
+    /// A bar of `total` steps, each a `unit`, which vanishes when it is dropped. It is drawn only on a terminal.
     pub(super) fn bar(self, total: u64, what: &'static str, unit: &str) -> ProgressBar {
         let target = if self.quiet {
             ProgressDrawTarget::hidden()
@@ -73,38 +71,38 @@ impl Report {
     }
 }
 
-/// How progress is told.
+/// How progress is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum ProgressKind {
     /// A bar on a terminal, plain lines elsewhere
     Auto,
     /// A line every few seconds
     Plain,
-    /// Lines that Open Job Description's schedulers read
+    /// Lines for the schedulers of Open Job Description
     Openjd,
     /// Nothing
     None,
 }
 
-/// The progress of frames, told from several threads.
+/// The progress of frames, which several threads report.
 pub(super) struct FrameProgress {
     kind: ProgressKind,
     bar: Option<ProgressBar>,
     megapixels: f64,
-    state: Mutex<Shown>,
+    state: Mutex<FrameCount>,
 }
 
-struct Shown {
+struct FrameCount {
     start: Instant,
     /// When a line was last written.
     told: Instant,
-    /// Frames that are to be drawn, as far as is known.
+    /// The frames to draw, as far as is known.
     total: u64,
     done: u64,
 }
 
 impl FrameProgress {
-    /// A frame was drawn.
+    /// Counts a frame that was drawn.
     pub(super) fn done(&self) {
         if let Some(bar) = &self.bar {
             bar.inc(1);
@@ -113,8 +111,8 @@ impl FrameProgress {
         }
     }
 
-    /// A frame was there already.
-    pub(super) fn passed_over(&self) {
+    /// Counts a frame that was finished before.
+    pub(super) fn skipped(&self) {
         if let Some(bar) = &self.bar {
             bar.dec_length(1);
         } else if self.kind != ProgressKind::None {
@@ -122,9 +120,9 @@ impl FrameProgress {
         }
     }
 
-    /// Writes a line where it is time for one.
-    fn tell(&self, change: impl FnOnce(&mut Shown)) {
-        // Who panicked while it was locked is not here to tell.
+    /// Applies `change` to the counts, and prints a line if one is due.
+    fn tell(&self, change: impl FnOnce(&mut FrameCount)) {
+        // Ignores a lock that a panic has poisoned.
         let Ok(mut shown) = self.state.lock() else {
             return;
         };
@@ -142,7 +140,7 @@ impl FrameProgress {
             return;
         }
         shown.told = now;
-        let Shown {
+        let FrameCount {
             start, total, done, ..
         } = *shown;
         let rate = done as f64 / (now - start).as_secs_f64();
@@ -181,18 +179,18 @@ fn frame_bar(total: u64, pixels: u64) -> ProgressBar {
         .with_finish(ProgressFinish::AndClear)
 }
 
-/// Says what is wrong, to whoever listens.
+/// Prints what is wrong.
 pub(super) fn warn(message: impl Display) {
     let _ = writeln!(io::stderr(), "darkness: {}", readable(&message));
 }
 
-/// A message without what terminals obey: the names of files have any characters.
+/// A message without control characters, which file names may hold.
 fn readable(message: &impl Display) -> String {
     let shown = |c| if c == '\n' { c } else { printable(c) };
     message.to_string().chars().map(shown).collect()
 }
 
-/// A time in a unit that suits it.
+/// Formats a time in milliseconds or seconds.
 pub(super) fn duration(time: Duration) -> String {
     let seconds = time.as_secs_f64();
     if seconds < 1.0 {

@@ -28,7 +28,6 @@ mod group;
 pub mod mask;
 pub mod needs;
 pub mod pixelwise;
-pub mod png;
 mod strips;
 mod tiles;
 

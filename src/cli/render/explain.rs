@@ -3,31 +3,52 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::super::StdoutError;
+use super::super::frame_range::FrameRange;
 use super::super::method::Method;
+use super::super::misuse::misuse;
+use super::super::progress::Report;
+use super::super::stdio::StdoutError;
+use super::super::threads::start_threads;
+use super::args::RenderArgs;
+use super::{draw, options};
 use crate::isoradial::Isoradials;
-use crate::orbit::exact::Exact;
 use crate::render::needs::{Candidate, Needs};
-use crate::scene::Scene;
+use crate::scene::{Animation, Scene};
 
-/// Prints what `scene` needs. `table` is the file that its angles are read from.
+/// Prints what one frame needs.
 ///
 /// # Errors
-/// The standard output does not take it.
-pub(super) fn explain(
-    scene: &Scene,
-    needs: &Needs,
-    method: &Method,
-    table: Option<&Path>,
+/// Several frames, a scene or a table that is refused, or a standard output that cannot be written.
+pub(super) fn run(
+    args: &RenderArgs,
+    animation: &Animation,
+    frames: &FrameRange,
+    report: Report,
 ) -> anyhow::Result<()> {
-    let curves = match method {
-        Method::Table(table) => Isoradials::new(&needs.sight, &table.lookup()),
-        _ => Isoradials::new(&needs.sight, &Exact),
-    };
+    if args.frames.is_some() && frames.iter().nth(1).is_some() {
+        return Err(misuse(
+            "--explain describes one frame; choose one with --frames",
+        ));
+    }
+    let scene = animation.frame(frames.iter().next().unwrap_or(1))?;
+    let needs = draw::needs(&scene);
+    let needed = needs.table().map(|candidate| candidate.name);
+    let checked = args.method.check(needed)?;
+    start_threads(args.threads.threads)?;
+    let method = options::method(args, checked, report)?;
+    let table = args.method.table_path(needed);
+    let curves = draw::curves(&needs, &method);
     let mut stdout = io::stdout().lock();
-    print(&mut stdout, scene, needs, &curves, method, table)
-        .and_then(|()| stdout.flush())
-        .map_err(StdoutError)?;
+    print(
+        &mut stdout,
+        &scene,
+        &needs,
+        &curves,
+        &method,
+        table.as_deref(),
+    )
+    .and_then(|()| stdout.flush())
+    .map_err(StdoutError)?;
     Ok(())
 }
 
@@ -119,7 +140,7 @@ fn print(
     )
 }
 
-/// What a table would do to the edges, and whether that is enough.
+/// How far a table moves the edges, and whether that is good enough.
 fn judgement(candidate: &Candidate, needs: &Needs) -> String {
     let chosen = needs.table().map(|table| table.name) == Some(candidate.name);
     let verdict = match (candidate.is_enough, chosen) {
@@ -134,7 +155,7 @@ fn judgement(candidate: &Candidate, needs: &Needs) -> String {
     )
 }
 
-/// Two digits that mean something.
+/// A number with two significant digits.
 fn figure(value: f64) -> String {
     if value == 0.0 {
         "0".into()

@@ -1,4 +1,4 @@
-//! What frames took, and what went wrong with them.
+//! Counts, times and failures of a run.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -6,25 +6,25 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use crate::render::batch::Effort;
+use super::draw::Effort;
 
-/// Counts and times of frames, from all threads.
+/// Counts, times and failures of frames, from all threads.
 #[derive(Debug, Default)]
-pub(super) struct Tally {
+pub(super) struct RunStats {
     drawn: AtomicU64,
     finished_before: AtomicU64,
     curves: Nanoseconds,
     pixels: Nanoseconds,
     encoding: Nanoseconds,
     writing: Nanoseconds,
-    rest: Mutex<Rest>,
+    details: Mutex<Details>,
 }
 
 #[derive(Debug, Default)]
-struct Rest {
+struct Details {
     worst: Option<(u32, Effort)>,
     ray_by_ray: u64,
-    /// Frames by what went wrong.
+    /// The numbers of the frames that failed, by reason.
     failures: BTreeMap<String, Vec<u32>>,
 }
 
@@ -41,8 +41,8 @@ impl Nanoseconds {
     }
 }
 
-impl Tally {
-    /// A frame was drawn, encoded and written.
+impl RunStats {
+    /// Counts a frame that was drawn, encoded and written.
     pub(super) fn drawn(
         &self,
         number: u32,
@@ -54,27 +54,28 @@ impl Tally {
         self.pixels.add(effort.pixels);
         self.encoding.add(encoding);
         self.writing.add(writing);
-        let mut rest = self.rest();
-        rest.ray_by_ray += u64::from(effort.ray_by_ray);
+        let mut details = self.details();
+        details.ray_by_ray += u64::from(effort.ray_by_ray);
         let total = effort.error.total();
-        // The first of equals, whatever the order in which they come.
-        let is_worse = rest.worst.is_none_or(|(first, worst)| {
+        // Of equal ones the first, in whatever order they are drawn.
+        let is_worse = details.worst.is_none_or(|(first, worst)| {
             total > worst.error.total() || (total == worst.error.total() && number < first)
         });
         if is_worse {
-            rest.worst = Some((number, effort));
+            details.worst = Some((number, effort));
         }
     }
 
-    /// A frame was there already.
+    /// Counts a frame that was there already.
     pub(super) fn finished_before(&self) {
         self.finished_before.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// A frame could not be drawn or written.
+    /// Counts a frame that could not be drawn or written.
     pub(super) fn failed(&self, number: u32, reason: &impl ToString) {
-        let mut rest = self.rest();
-        rest.failures
+        let mut details = self.details();
+        details
+            .failures
             .entry(reason.to_string())
             .or_default()
             .push(number);
@@ -88,17 +89,17 @@ impl Tally {
         self.finished_before.load(Ordering::Relaxed)
     }
 
-    /// The frame whose edges may be off by the most.
+    /// The frame with the largest error of an edge.
     pub(super) fn worst(&self) -> Option<(u32, Effort)> {
-        self.rest().worst
+        self.details().worst
     }
 
-    /// How many frames' curves were not good enough.
+    /// The number of frames whose curves were not accurate enough.
     pub(super) fn count_ray_by_ray(&self) -> u64 {
-        self.rest().ray_by_ray
+        self.details().ray_by_ray
     }
 
-    /// The time that the parts of the work took, all threads together.
+    /// The times of the parts of the work, summed over all threads.
     pub(super) fn times(&self) -> [(&'static str, Duration); 4] {
         [
             ("curves", self.curves.total()),
@@ -108,29 +109,29 @@ impl Tally {
         ]
     }
 
-    /// Which frames failed, and why; none if none did.
+    /// The frames that failed, by reason, in words; [`None`] if none did.
     pub(super) fn failures(&self) -> Option<String> {
-        let mut rest = self.rest();
-        if rest.failures.is_empty() {
+        let mut details = self.details();
+        if details.failures.is_empty() {
             return None;
         }
-        let count: usize = rest.failures.values().map(Vec::len).sum();
+        let count: usize = details.failures.values().map(Vec::len).sum();
         let noun = if count == 1 { "frame" } else { "frames" };
-        let mut text = format!("{count} {noun} failed, the same command tries them again:");
-        for (reason, frames) in &mut rest.failures {
+        let mut text = format!("{count} {noun} failed; the same command tries them again:");
+        for (reason, frames) in &mut details.failures {
             frames.sort_unstable();
             let _ = write!(text, "\n  {}: {reason}", ranges(frames));
         }
         Some(text)
     }
 
-    fn rest(&self) -> MutexGuard<'_, Rest> {
-        // Counts are whole at every moment.
-        self.rest.lock().unwrap_or_else(PoisonError::into_inner)
+    fn details(&self) -> MutexGuard<'_, Details> {
+        // A panic cannot leave the counts inconsistent.
+        self.details.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// Rising numbers as a range of frames that can be asked for: `3-5,9`.
+/// Formats rising numbers as an argument of `--frames`: `3-5,9`.
 fn ranges(numbers: &[u32]) -> String {
     let runs = numbers.chunk_by(|a, b| a + 1 == *b);
     let text: Vec<String> = runs
@@ -149,15 +150,15 @@ mod tests {
 
     #[test]
     fn failures_are_listed_by_reason_in_ranges_that_can_be_asked_for_again() {
-        let tally = Tally::default();
-        assert_eq!(tally.failures(), None);
+        let stats = RunStats::default();
+        assert_eq!(stats.failures(), None);
         for number in [9, 3, 5, 4] {
-            tally.failed(number, &"the disk is full");
+            stats.failed(number, &"the disk is full");
         }
-        tally.failed(7, &"no right");
+        stats.failed(7, &"no right");
         assert_eq!(
-            tally.failures().unwrap(),
-            "5 frames failed, the same command tries them again:\n  7: no right\n  3-5,9: the disk is full"
+            stats.failures().unwrap(),
+            "5 frames failed; the same command tries them again:\n  7: no right\n  3-5,9: the disk is full"
         );
     }
 }
