@@ -127,7 +127,7 @@ fn a_table_is_made_once_and_replaced_only_on_demand() {
 
     for (place, words) in [
         ("tables", "tables is a folder"),
-        ("tables/draft.table/x", "is no folder"),
+        ("tables/draft.table/x", "is not a folder"),
         #[cfg(target_os = "linux")]
         ("/dev/null", "no regular file"),
         #[cfg(target_os = "linux")]
