@@ -1,6 +1,6 @@
 //! Why a scene is refused.
 
-use std::fmt::Debug;
+use std::fmt::{Debug, Display};
 use std::path::PathBuf;
 
 use super::builtin::{Builtin, builtins};
@@ -70,11 +70,28 @@ pub enum SceneError {
 
 impl SceneError {
     /// The error of a value that is not allowed.
-    pub(super) fn value(key: &'static str, value: impl Debug, reason: impl Into<String>) -> Self {
+    pub(super) fn value(key: &'static str, value: impl Debug, reason: impl Display) -> Self {
         Self::Value {
             key,
             value: format!("{value:?}"),
-            reason: reason.into(),
+            reason: reason.to_string(),
+        }
+    }
+
+    /// Checks that a value is allowed.
+    ///
+    /// # Errors
+    /// [`Self::value`]
+    pub(super) fn check(
+        is_allowed: bool,
+        key: &'static str,
+        value: impl Debug,
+        reason: impl Display,
+    ) -> Result<(), Self> {
+        if is_allowed {
+            Ok(())
+        } else {
+            Err(Self::value(key, value, reason))
         }
     }
 

@@ -27,7 +27,7 @@ pub(super) struct CameraTable {
     /// Left out where the animation sets it.
     #[serde(default, deserialize_with = "maybe_three_numbers")]
     pub(super) position: Option<[f64; 3]>,
-    #[serde(default = "hole", deserialize_with = "three_numbers")]
+    #[serde(default, deserialize_with = "three_numbers")]
     pub(super) focus: [f64; 3],
     /// Its default depends on the animation.
     #[serde(default, deserialize_with = "maybe_three_numbers")]
@@ -58,10 +58,11 @@ pub(super) struct ImageTable {
 }
 
 /// How a quantity changes between keyframes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Interpolation {
+pub(super) enum Interpolation {
     /// With a continuous first derivative, from rest to rest.
+    #[default]
     Smooth,
     /// By the same amount each frame.
     Linear,
@@ -74,7 +75,7 @@ pub(super) struct AnimationTable {
     pub(super) frames: i64,
     #[serde(default = "of_film")]
     pub(super) fps: f64,
-    #[serde(default = "smooth")]
+    #[serde(default)]
     pub(super) interpolation: Interpolation,
     pub(super) orbit: Option<OrbitTable>,
     #[serde(default)]
@@ -152,14 +153,6 @@ impl fmt::Display for FromTo {
 
 fn of_film() -> f64 {
     24.0
-}
-
-fn smooth() -> Interpolation {
-    Interpolation::Smooth
-}
-
-fn hole() -> [f64; 3] {
-    [0.0; 3]
 }
 
 fn yes() -> bool {

@@ -56,20 +56,17 @@ pub(super) fn scene(camera: &Camera, radius: f64, disk: &Disk) -> Result<(), Sce
     finite_direction("disk.normal", disk.normal.to_array())?;
     check_camera(camera, radius)?;
     edges(disk.inner, disk.outer)?;
-    if cosine(camera.position, disk.normal).abs() <= IN_PLANE
-        && (disk.inner..=disk.outer).contains(&radius)
-    {
-        return Err(SceneError::value(
-            "camera.position",
-            camera.position.to_array(),
-            format!(
-                "the camera is inside the disk's matter: in the disk's plane, at radius {radius:?} between \
-                 disk.inner = {:?} and disk.outer = {:?}; move it off the plane or out of the disk",
-                disk.inner, disk.outer
-            ),
-        ));
-    }
-    Ok(())
+    let is_in_plane = cosine(camera.position, disk.normal).abs() <= IN_PLANE;
+    SceneError::check(
+        !(is_in_plane && (disk.inner..=disk.outer).contains(&radius)),
+        "camera.position",
+        camera.position.to_array(),
+        format_args!(
+            "the camera is inside the disk's matter: in the disk's plane, at radius {radius:?} between \
+             disk.inner = {:?} and disk.outer = {:?}; move it off the plane or out of the disk",
+            disk.inner, disk.outer
+        ),
+    )
 }
 
 /// Checks a picture's settings. The sizes are signed so that a negative one gets the same sentence as a zero.
@@ -96,16 +93,14 @@ pub(super) fn image(
 /// # Errors
 /// [`SceneError::Value`]
 pub(super) fn tolerance(pixels: f64) -> Result<(), SceneError> {
-    if pixels > 0.0 && pixels <= MAX_TOLERANCE {
-        return Ok(());
-    }
-    Err(SceneError::value(
+    SceneError::check(
+        pixels > 0.0 && pixels <= MAX_TOLERANCE,
         "image.tolerance",
         pixels,
-        format!(
+        format_args!(
             "an edge's largest error is above 0 and at most {MAX_TOLERANCE} pixel; the default is 0.001"
         ),
-    ))
+    )
 }
 
 /// Checks a picture's size: each side from 1 to [`MAX_IMAGE_SIDE`] pixels.
@@ -134,49 +129,44 @@ pub(super) fn image_size(width: i64, height: i64) -> Result<ImageSize, SceneErro
 /// # Errors
 /// [`SceneError::Value`]
 pub(super) fn radius(key: &'static str, position: DVec3, radius: f64) -> Result<(), SceneError> {
-    let reason = if radius > FARTHEST_CAMERA {
-        format!(
-            "the camera is at radius {radius:?}; at most {FARTHEST_CAMERA:e} is allowed, since double precision is too \
-             coarse farther out"
-        )
-    } else if radius > HORIZON_RADIUS {
-        return Ok(());
-    } else {
-        format!(
-            "the camera is at radius {radius:?}, not outside the horizon; a static camera needs a radius above 1"
-        )
+    let check = |is_allowed, reason: &str| {
+        let reason = format_args!("the camera is at radius {radius:?}; {reason}");
+        SceneError::check(is_allowed, key, position.to_array(), reason)
     };
-    Err(SceneError::value(key, position.to_array(), reason))
+    check(
+        radius > HORIZON_RADIUS,
+        "a static camera needs a radius above 1, outside the horizon",
+    )?;
+    check(
+        radius <= FARTHEST_CAMERA,
+        "at most 1e15 is allowed, since double precision is too coarse farther out",
+    )
 }
 
 fn check_camera(camera: &Camera, radius: f64) -> Result<(), SceneError> {
     self::radius("camera.position", camera.position, radius)?;
     let view = camera.focus - camera.position;
-    if norm(view) <= SAME_POINT * radius {
-        return Err(SceneError::value(
-            "camera.focus",
-            camera.focus.to_array(),
-            "this point cannot be told apart from camera.position; the camera needs another point to look at",
-        ));
-    }
-    if norm(direction(view).cross(direction(camera.up))) <= PARALLEL {
-        return Err(SceneError::value(
-            "camera.up",
-            camera.up.to_array(),
-            "this direction is parallel to the view from camera.position to camera.focus; give another one",
-        ));
-    }
-    let fov = finite("camera.fov", camera.fov_degrees)?;
-    if (NARROWEST_FOV..180.0).contains(&fov) {
-        return Ok(());
-    }
-    Err(SceneError::value(
+    SceneError::check(
+        norm(view) > SAME_POINT * radius,
+        "camera.focus",
+        camera.focus.to_array(),
+        "this point cannot be told apart from camera.position; the camera needs another point to look at",
+    )?;
+    SceneError::check(
+        norm(direction(view).cross(direction(camera.up))) > PARALLEL,
+        "camera.up",
+        camera.up.to_array(),
+        "this direction is parallel to the view from camera.position to camera.focus; give another one",
+    )?;
+    let fov = camera.fov_degrees;
+    SceneError::check(
+        (NARROWEST_FOV..180.0).contains(&fov),
         "camera.fov",
         fov,
-        format!(
+        format_args!(
             "a flat picture's vertical field of view is at least {NARROWEST_FOV:e} and below 180 degrees"
         ),
-    ))
+    )
 }
 
 /// Checks a disk's edges.
@@ -186,46 +176,35 @@ fn check_camera(camera: &Camera, radius: f64) -> Result<(), SceneError> {
 pub(super) fn edges(inner: f64, outer: f64) -> Result<(), SceneError> {
     finite("disk.inner", inner)?;
     finite("disk.outer", outer)?;
-    if inner < ISCO_RADIUS {
-        return Err(SceneError::value(
-            "disk.inner",
-            inner,
-            "no stable circular orbit exists inside 3 Schwarzschild radii (the ISCO), so no disk does",
-        ));
-    }
-    if outer > WIDEST_DISK {
-        return Err(SceneError::value(
-            "disk.outer",
-            outer,
-            format!(
-                "at most {WIDEST_DISK:e} is allowed, since squares of larger radii leave double precision"
-            ),
-        ));
-    }
-    if outer <= inner {
-        return Err(SceneError::value(
-            "disk.outer",
-            outer,
-            format!("the outer edge must be above the inner edge, disk.inner = {inner:?}"),
-        ));
-    }
-    Ok(())
+    SceneError::check(
+        inner >= ISCO_RADIUS,
+        "disk.inner",
+        inner,
+        "no stable circular orbit exists inside 3 Schwarzschild radii (the ISCO), so no disk does",
+    )?;
+    SceneError::check(
+        outer <= WIDEST_DISK,
+        "disk.outer",
+        outer,
+        format_args!(
+            "at most {WIDEST_DISK:e} is allowed, since squares of larger radii leave double precision"
+        ),
+    )?;
+    SceneError::check(
+        outer > inner,
+        "disk.outer",
+        outer,
+        format_args!("the outer edge must be above the inner edge, disk.inner = {inner:?}"),
+    )
 }
 
 /// Checks that a number is finite.
 ///
 /// # Errors
 /// [`SceneError::Value`]
-pub(super) fn finite(key: &'static str, value: f64) -> Result<f64, SceneError> {
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(SceneError::value(
-            key,
-            value,
-            "every number must be finite, between keyframes too",
-        ))
-    }
+pub(super) fn finite(key: &'static str, value: f64) -> Result<(), SceneError> {
+    let reason = "every number must be finite, between keyframes too";
+    SceneError::check(value.is_finite(), key, value, reason)
 }
 
 /// Checks that a vector's components are finite.
@@ -248,13 +227,8 @@ pub(super) fn finite_direction(
     components: [f64; 3],
 ) -> Result<DVec3, SceneError> {
     let v = finite_vector(key, components)?;
-    if v == DVec3::ZERO {
-        return Err(SceneError::value(
-            key,
-            components,
-            "a direction must not be the zero vector",
-        ));
-    }
+    let reason = "a direction must not be the zero vector";
+    SceneError::check(v != DVec3::ZERO, key, components, reason)?;
     Ok(v)
 }
 

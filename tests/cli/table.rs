@@ -129,7 +129,7 @@ fn a_table_is_made_once_and_replaced_only_on_demand() {
         ("tables", "tables is a folder"),
         ("tables/draft.table/x", "is not a folder"),
         #[cfg(target_os = "linux")]
-        ("/dev/null", "no regular file"),
+        ("/dev/null", "not a regular file"),
         #[cfg(target_os = "linux")]
         ("/proc/a/b.table", "nothing can be written"),
     ] {

@@ -183,7 +183,7 @@ impl Run<'_> {
         let png = self.plan.encode(pixels, &self.origin.of_frame(number))?;
         let encoded = Instant::now();
         write(number, &png)?;
-        self.done(number, effort, (encoded - start, encoded.elapsed()));
+        self.done(number, effort, encoded - start, encoded.elapsed());
         Ok(())
     }
 
@@ -197,19 +197,19 @@ impl Run<'_> {
             };
             let start = Instant::now();
             film.write(place, pixels)?;
-            self.done(number, effort, (Duration::ZERO, start.elapsed()));
+            self.done(number, effort, Duration::ZERO, start.elapsed());
             Ok::<(), Broken>(())
         };
         let drawn = self.draw(|_| true, done);
-        if drawn.is_ok() && self.stats.count_drawn() < self.plan.count {
+        if drawn.is_ok() && self.stats.counts().drawn < self.plan.count {
             // The run was interrupted: an unfinished film is not kept.
             return Ok(());
         }
         film.finish()
     }
 
-    fn done(&self, number: u32, effort: Effort, times: (Duration, Duration)) {
-        self.stats.drawn(number, effort, times);
+    fn done(&self, number: u32, effort: Effort, encoding: Duration, writing: Duration) {
+        self.stats.drawn(number, effort, encoding, writing);
         self.progress.done();
     }
 }

@@ -9,6 +9,7 @@ use super::super::progress::{Report, duration, warn};
 use super::draw::{self, Effort};
 use super::plan::Plan;
 use super::run::Outcome;
+use super::run_stats::Counts;
 
 /// Reports a run.
 ///
@@ -20,12 +21,12 @@ pub(super) fn report(
     outcome: &Outcome,
     report: Report,
 ) -> anyhow::Result<()> {
-    let stats = &outcome.stats;
-    let (drawn, kept) = (stats.count_drawn(), stats.count_finished_before());
+    let counts = &*outcome.stats.counts();
+    let (drawn, kept) = (counts.drawn, counts.finished_before);
     if drawn > 0 {
-        report_errors(plan, outcome, report);
+        report_errors(plan, counts, report);
         if plan.args.timings {
-            print_timings(plan, method, outcome)?;
+            print_timings(plan, method, counts, outcome.elapsed)?;
         }
     }
     let finished = drawn + kept;
@@ -37,7 +38,7 @@ pub(super) fn report(
         };
         format!("{finished} of {} frames are finished{rest}", plan.count)
     });
-    match (stats.failures(), &interrupted) {
+    match (counts.failures(), &interrupted) {
         (Some(failures), Ok(())) => anyhow::bail!("{failures}"),
         (Some(failures), Err(_)) => warn(failures),
         (None, _) => {}
@@ -70,13 +71,13 @@ pub(super) fn report(
 }
 
 /// Reports the largest error of an edge where it exceeds the tolerance, and what would help.
-fn report_errors(plan: &Plan<'_>, outcome: &Outcome, report: Report) {
+fn report_errors(plan: &Plan<'_>, counts: &Counts, report: Report) {
     let Some((
         number,
         Effort {
             error, ray_by_ray, ..
         },
-    )) = outcome.stats.worst()
+    )) = counts.worst
     else {
         return;
     };
@@ -85,9 +86,8 @@ fn report_errors(plan: &Plan<'_>, outcome: &Outcome, report: Report) {
     } else {
         format!("frame {number}")
     };
-    let unresolved = outcome.stats.count_ray_by_ray();
-    if unresolved > 0 {
-        let of = match unresolved {
+    if counts.ray_by_ray > 0 {
+        let of = match counts.ray_by_ray {
             1 => String::new(),
             count => format!(" of {count} such frames"),
         };
@@ -117,13 +117,21 @@ fn report_errors(plan: &Plan<'_>, outcome: &Outcome, report: Report) {
 
 /// Prints the times of the parts of the work, summed over all threads. For one picture, culling and edges are measured
 /// once more by themselves.
-fn print_timings(plan: &Plan<'_>, method: &Method, outcome: &Outcome) -> anyhow::Result<()> {
-    let mut lines: Vec<(&str, Duration)> = outcome.stats.times().into();
+fn print_timings(
+    plan: &Plan<'_>,
+    method: &Method,
+    counts: &Counts,
+    elapsed: Duration,
+) -> anyhow::Result<()> {
+    let mut lines: Vec<_> = ["curves", "render", "encode", "write"]
+        .into_iter()
+        .zip(counts.times)
+        .collect();
     if plan.count == 1 {
         let (culling, edges) = draw::parts(&plan.first, method)?;
         lines.splice(2..2, [("of it culling", culling), ("of it edges", edges)]);
     }
-    lines.push(("all, from the first frame to the last", outcome.elapsed));
+    lines.push(("all, from the first frame to the last", elapsed));
     let mut stderr = io::stderr();
     for (name, time) in lines {
         let _ = writeln!(stderr, "{:>10}  {name}", duration(time));

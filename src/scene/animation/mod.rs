@@ -39,8 +39,7 @@ use glam::DVec3;
 
 use super::checked::Scene;
 use super::error::SceneError;
-pub use super::file::Interpolation;
-use super::file::{KeyframeTable, SceneFile};
+use super::file::{Interpolation, KeyframeTable, SceneFile};
 use super::validate;
 use super::values::{Camera, Disk, ImageSettings, ImageSize};
 use super::vector::cosine;
