@@ -104,10 +104,10 @@ fn report_errors(plan: &Plan<'_>, counts: &Counts, report: Report) {
     };
     let allowed = plan.first.tolerance();
     if off > allowed {
-        let advice = if error.angles > error.rounding {
-            plan.needs.advice()
-        } else {
-            "double precision cannot do better".into()
+        let advice = match plan.needs.table() {
+            _ if error.angles <= error.rounding => "double precision cannot do better".into(),
+            Some(table) => format!("the {} table is good enough", table.name),
+            None => "no table is good enough, --method exact is".into(),
         };
         report.note(format_args!(
             "an edge of {frame} may be off by {off:.1e} pixels, more than the {allowed:?} asked for: {advice}"
