@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
@@ -39,18 +39,11 @@ impl Report {
             ProgressKind::Auto => ProgressKind::Plain,
             other => other,
         };
-        let bar = (kind == ProgressKind::Auto).then(|| frame_bar(total, pixels));
-        let now = Instant::now();
         FrameProgress {
             kind,
-            bar,
+            bar: frame_bar(kind, total, pixels),
             megapixels: pixels as f64 / 1e6,
-            state: Mutex::new(FrameCount {
-                start: now,
-                told: now,
-                total,
-                done: 0,
-            }),
+            told: Mutex::new(Instant::now()),
         }
     }
 
@@ -87,63 +80,39 @@ pub(super) enum ProgressKind {
 /// The progress of frames, which several threads report.
 pub(super) struct FrameProgress {
     kind: ProgressKind,
-    bar: Option<ProgressBar>,
+    /// Counts the frames; it is drawn for [`ProgressKind::Auto`] only.
+    bar: ProgressBar,
     megapixels: f64,
-    state: Mutex<FrameCount>,
-}
-
-struct FrameCount {
-    start: Instant,
-    /// When a line was last written.
-    told: Instant,
-    /// The frames to draw, as far as is known.
-    total: u64,
-    done: u64,
+    /// When a line was last printed.
+    told: Mutex<Instant>,
 }
 
 impl FrameProgress {
     /// Counts a frame that was drawn.
     pub(super) fn done(&self) {
-        if let Some(bar) = &self.bar {
-            bar.inc(1);
-        } else if self.kind != ProgressKind::None {
-            self.tell(|shown| shown.done += 1);
-        }
+        self.tell(|bar| bar.inc(1));
     }
 
     /// Counts a frame that was finished before.
     pub(super) fn skipped(&self) {
-        if let Some(bar) = &self.bar {
-            bar.dec_length(1);
-        } else if self.kind != ProgressKind::None {
-            self.tell(|shown| shown.total = shown.total.saturating_sub(1));
-        }
+        self.tell(|bar| bar.dec_length(1));
     }
 
-    /// Applies `change` to the counts, and prints a line if one is due.
-    fn tell(&self, change: impl FnOnce(&mut FrameCount)) {
-        // Ignores a lock that a panic has poisoned.
-        let Ok(mut shown) = self.state.lock() else {
-            return;
+    /// Counts a frame, and prints a line if one is due.
+    fn tell(&self, count: impl FnOnce(&ProgressBar)) {
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        count(&self.bar);
+        let (done, total) = (self.bar.position(), self.bar.length().unwrap_or(0));
+        let is_due = match self.kind {
+            ProgressKind::Auto | ProgressKind::None => return,
+            ProgressKind::Plain => told.elapsed() >= Duration::from_secs(5),
+            ProgressKind::Openjd => told.elapsed() >= Duration::from_secs(1) || done == total,
         };
-        change(&mut shown);
-        let now = Instant::now();
-        let is_last = shown.done == shown.total;
-        let every = if self.kind == ProgressKind::Openjd {
-            1
-        } else {
-            5
-        };
-        let is_time = now - shown.told >= Duration::from_secs(every);
-        let is_told = is_time || (is_last && self.kind == ProgressKind::Openjd);
-        if !is_told {
+        if !is_due {
             return;
         }
-        shown.told = now;
-        let FrameCount {
-            start, total, done, ..
-        } = *shown;
-        let rate = done as f64 / (now - start).as_secs_f64();
+        *told = Instant::now();
+        let rate = done as f64 / self.bar.elapsed().as_secs_f64();
         let left = total.saturating_sub(done) as f64 / rate;
         let left = if left.is_finite() { left } else { 0.0 };
         let line = format!(
@@ -161,7 +130,13 @@ impl FrameProgress {
     }
 }
 
-fn frame_bar(total: u64, pixels: u64) -> ProgressBar {
+/// A bar that counts frames, drawn for [`ProgressKind::Auto`] only.
+fn frame_bar(kind: ProgressKind, total: u64, pixels: u64) -> ProgressBar {
+    let target = if kind == ProgressKind::Auto {
+        ProgressDrawTarget::stderr()
+    } else {
+        ProgressDrawTarget::hidden()
+    };
     let megapixels = pixels as f64 / 1e6;
     let rate = move |state: &ProgressState, out: &mut dyn std::fmt::Write| {
         let rate = state.per_sec();
@@ -174,7 +149,7 @@ fn frame_bar(total: u64, pixels: u64) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} frames, {rate}, {eta} left")
         .unwrap_or_else(|_| ProgressStyle::default_bar())
         .with_key("rate", rate);
-    ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr())
+    ProgressBar::with_draw_target(Some(total), target)
         .with_style(style)
         .with_finish(ProgressFinish::AndClear)
 }
