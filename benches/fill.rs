@@ -23,13 +23,13 @@ fn main() {
     };
     one_thread.install(|| {
         for builtin in builtins() {
-            if let Some(scene) = Scene::builtin(builtin.name()) {
+            if let Ok(scene) = Scene::builtin(builtin.name()) {
                 frames_of(builtin.name(), &scene, &lookup, 51);
             }
         }
         // Sixteen times the pixels, four times the edges.
-        let large = Scene::builtin("classic").and_then(|scene| scene.with_size(7680, 4320).ok());
-        if let Some(scene) = large {
+        let large = Scene::builtin("classic").and_then(|scene| scene.with_size(7680, 4320));
+        if let Ok(scene) = large {
             frames_of("classic, 7680 × 4320", &scene, &lookup, 21);
         }
     });

@@ -46,7 +46,7 @@ fn main() {
     };
     one_thread.install(|| {
         for builtin in builtins() {
-            let Some(scene) = Scene::builtin(builtin.name()) else {
+            let Ok(scene) = Scene::builtin(builtin.name()) else {
                 continue;
             };
             let view = View::new(&scene);
@@ -113,8 +113,7 @@ fn main() {
 
 /// Every pixel of a small classic frame through the exact method and through the table, without curves.
 fn exact_frame(lookup: &darkness::table::Lookup<'_>) {
-    let Some(scene) = Scene::builtin("classic").and_then(|scene| scene.with_size(480, 270).ok())
-    else {
+    let Ok(scene) = Scene::builtin("classic").and_then(|scene| scene.with_size(480, 270)) else {
         return;
     };
     let view = View::new(&scene);

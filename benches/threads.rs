@@ -4,11 +4,11 @@
 
 mod interleaved;
 
+use darkness::cli::FrameRange;
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
 use darkness::render::batch::{self, Curved, Drawn, Sharing};
 use darkness::render::{coverage, mask};
-use darkness::scene::animation::FrameRange;
 use darkness::scene::{Animation, Scene, View, builtins};
 use interleaved::{Contender, compare};
 use rayon::prelude::*;
@@ -48,8 +48,8 @@ fn main() {
         ],
     );
     for (width, height) in [(1920, 1080), (7680, 4320)] {
-        let scene = Scene::builtin("classic").and_then(|scene| scene.with_size(width, height).ok());
-        let Some(scene) = scene else {
+        let scene = Scene::builtin("classic").and_then(|scene| scene.with_size(width, height));
+        let Ok(scene) = scene else {
             return;
         };
         let view = View::new(&scene);

@@ -1,6 +1,8 @@
 //! **darkness** renders what a black hole does to the light of its accretion disk.
 
+#[cfg(feature = "chart")]
 pub mod chart;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod isoradial;
 pub mod orbit;

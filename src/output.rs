@@ -1,8 +1,8 @@
 //! Files that appear whole or not at all.
 //!
-//! A file is written under another name in the same folder, a hidden one that ends in `.part`, and renamed when it is
-//! finished. While it is written it is locked (`flock`): so what a killed process left behind can be told from what a
-//! live one, also another machine's on a shared disk, is writing.
+//! A file is written under a hidden name that ends in `.part`, in the same folder, and renamed when it is finished. It
+//! is locked (`flock`) while it is written: the lock tells a file that a process is writing, on any machine that shares
+//! the disk, from one that a killed process left.
 
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, TryLockError};
@@ -14,20 +14,19 @@ use tempfile::NamedTempFile;
 /// The end of an unfinished file's name.
 const ENDING: &str = ".part";
 
-/// How many letters and digits stand before the ending, so that two processes can write one file.
+/// The number of random letters and digits before the ending, so that two processes can write one file.
 const RANDOM: usize = 6;
 
-/// The longest name that an unfinished file carries, in bytes: with the rest it is still a name that file systems take. Of a longer one
-/// it carries the checksum.
+/// The longest file name that becomes part of an unfinished file's name, in bytes: file systems allow 255 in all. The
+/// checksum stands for a longer one.
 pub const LONGEST_NAME: usize = 200;
 
-/// Writes a file through `fill`, whole or not at all, and onto the disk; what a killed process left of the same file is
-/// removed. Whatever stops the process or the disk on the way, `path` holds its old content, the new, or nothing.
-///
-/// Its mode follows the umask, as that of any new file.
+/// Writes a file through `fill`, whole or not at all, and syncs it to the disk. Whatever stops the process or the disk,
+/// `path` holds its old content, the new content, or nothing. Unfinished files that killed processes left for `path`
+/// are removed. The mode follows the umask.
 ///
 /// # Errors
-/// What creating, filling, syncing or renaming the file returns; the unfinished file is removed then.
+/// What creating, filling, syncing or renaming the file returns. The unfinished file is then removed.
 pub fn write_whole(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
@@ -39,15 +38,14 @@ pub fn write_whole(
         writer.flush()?;
     }
     unfinished.finish()?;
-    // The rename itself lasts once the folder is on the disk; not every system opens folders, and the file is whole
-    // either way.
+    // Syncing the folder makes the rename last. Not every system can open folders; the file is whole either way.
     if let Ok(folder) = File::open(folder_of(path)) {
         let _ = folder.sync_all();
     }
     Ok(())
 }
 
-/// A file that is being written. Dropped before it is finished, it is removed.
+/// A file that is being written. If it is dropped before it is finished, it is removed.
 #[derive(Debug)]
 pub struct Unfinished {
     temporary: NamedTempFile,
@@ -55,7 +53,7 @@ pub struct Unfinished {
 }
 
 impl Unfinished {
-    /// [Begins](Self::new) the file that is to be at `path`, after what killed processes left of it is removed.
+    /// Removes what killed processes left for `path`, and [begins](Self::new) the file.
     ///
     /// # Errors
     /// Those of [`Self::new`].
@@ -65,7 +63,7 @@ impl Unfinished {
         Self::new(path)
     }
 
-    /// Begins the file that is to be at `path`.
+    /// Begins a file that will be at `path`.
     ///
     /// # Errors
     /// What creating a file in the same folder returns.
@@ -80,13 +78,13 @@ impl Unfinished {
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt;
-            // Less the umask: the kernel takes it off where the file is made.
+            // The kernel applies the umask.
             builder.permissions(fs::Permissions::from_mode(0o666));
         }
         loop {
             let temporary = builder.tempfile_in(folder_of(&path)).map_err(bare)?;
-            // Between its making and its locking someone may have taken it for a leftover. Where files cannot be locked
-            // nobody can.
+            // Before the lock another process may have taken the file for a leftover. Where files cannot be locked,
+            // none does.
             let is_taken = matches!(
                 temporary.as_file().try_lock(),
                 Err(TryLockError::WouldBlock)
@@ -97,17 +95,17 @@ impl Unfinished {
         }
     }
 
-    /// The file, to be written.
+    /// The file to write to.
     pub fn file(&mut self) -> &mut File {
         self.temporary.as_file_mut()
     }
 
-    /// Gives the file its name, once its content is on the disk.
+    /// Syncs the content to the disk, and gives the file its name.
     ///
     /// # Errors
-    /// What syncing or renaming it returns.
+    /// What syncing or renaming the file returns.
     pub fn finish(self) -> io::Result<()> {
-        // A full or a broken disk may not say so before.
+        // Some disks report that they are full or broken only here.
         self.temporary.as_file().sync_data()?;
         self.temporary
             .persist(&self.path)
@@ -116,8 +114,7 @@ impl Unfinished {
     }
 }
 
-/// Removes what killed processes left unfinished in a folder: those files whose [`label`] is asked for, and none that
-/// a live process is writing.
+/// Removes the unfinished files in a folder whose [`label`] is `asked`, unless a process is writing them.
 fn remove_leftovers(folder: &Path, asked: impl Fn(&[u8]) -> bool) {
     let Ok(entries) = fs::read_dir(folder) else {
         return;
@@ -129,7 +126,8 @@ fn remove_leftovers(folder: &Path, asked: impl Fn(&[u8]) -> bool) {
     }
 }
 
-/// The label of the file that an unfinished one of this name was to become, in the system's encoding.
+/// The [label](LONGEST_NAME) in an unfinished file's name: the name that the file would have had, or its checksum, in
+/// the system's encoding. [`None`] for any other name.
 pub fn leftover(name: &OsStr) -> Option<&[u8]> {
     let bytes = name.as_encoded_bytes().strip_prefix(b".")?;
     let bytes = bytes.strip_suffix(ENDING.as_bytes())?;
@@ -138,11 +136,11 @@ pub fn leftover(name: &OsStr) -> Option<&[u8]> {
     (is_ours && !label.is_empty()).then_some(label)
 }
 
-/// Removes an unfinished file, unless somebody is writing it.
+/// Removes an unfinished file, unless a process is writing it.
 pub fn remove_if_dead(path: &Path) {
-    // To open a pipe is to wait for its other end.
+    // Opening a pipe would wait for its writer.
     let is_file = fs::symlink_metadata(path).is_ok_and(|kind| kind.is_file());
-    // The lock is let go when the file is gone: who finds it locked makes another.
+    // The file is deleted before it is unlocked: a writer that finds it locked chooses another name.
     if is_file
         && let Ok(file) = File::open(path)
         && file.try_lock().is_ok()
@@ -151,7 +149,7 @@ pub fn remove_if_dead(path: &Path) {
     }
 }
 
-/// What an unfinished file is called after: its name, or for a long one its checksum.
+/// The label in an unfinished file's name: the final name, or for a long one its checksum.
 fn label(name: &OsStr) -> OsString {
     if name.len() > LONGEST_NAME {
         format!("{:08x}", crc32fast::hash(name.as_encoded_bytes())).into()
@@ -160,7 +158,7 @@ fn label(name: &OsStr) -> OsString {
     }
 }
 
-/// An error without the random name of the file that it came with.
+/// The system's error, without the random file name that `tempfile` adds.
 fn bare(error: io::Error) -> io::Error {
     let source = error.get_ref().and_then(|error| error.source());
     let system = source.and_then(|source| source.downcast_ref::<io::Error>());
@@ -170,7 +168,7 @@ fn bare(error: io::Error) -> io::Error {
     }
 }
 
-/// The folder that a file is in.
+/// The folder of a file.
 fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,

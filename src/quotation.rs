@@ -1,6 +1,6 @@
-//! Somebody else's text within a message: short, and nothing in it that a terminal obeys.
+//! Foreign text within a message: short, and without control characters.
 
-/// What stands for a character in a message of one line.
+/// Replaces a control character, for a message of one line.
 pub(crate) fn printable(c: char) -> char {
     match c {
         '\t' => ' ',
@@ -9,7 +9,7 @@ pub(crate) fn printable(c: char) -> char {
     }
 }
 
-/// A text of one line, the beginning of it if it has more characters than that.
+/// The first `longest` characters of a line, without control characters.
 pub(crate) fn beginning(line: &str, longest: usize) -> String {
     let mut text: String = line.chars().take(longest).map(printable).collect();
     if line.chars().nth(longest).is_some() {

@@ -5,11 +5,11 @@ use core::alloc::{GlobalAlloc, Layout};
 use core::sync::atomic::{AtomicU64, Ordering};
 use std::alloc::System;
 
+use darkness::cli::FrameRange;
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
 use darkness::render::batch::{self, Curved, Drawn, Sharing};
 use darkness::render::{coverage, mask};
-use darkness::scene::animation::FrameRange;
 use darkness::scene::{Animation, Scene, View};
 
 struct Counting;

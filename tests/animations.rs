@@ -239,7 +239,7 @@ fn misuse_is_told_before_anything_is_done() {
         &["tables is a folder", "tables/small_####.png"],
     );
     misused(&["small.toml", "-o", "new/"], &["new/small_####.png"]);
-    misused(&["small.toml", "-o", "f_##.gif"], &[".png, .y4m and .raw"]);
+    misused(&["small.toml", "-o", "f_##.gif"], &[".png, .y4m or .raw"]);
     misused(&["small.toml", "--frames", "19-21"], &["19-21", "1 to 20"]);
     misused(
         &["small.toml", "--frames", "5-1"],

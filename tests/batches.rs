@@ -4,11 +4,11 @@ use core::sync::atomic::{AtomicUsize, Ordering};
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
+use darkness::cli::FrameRange;
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
 use darkness::render::batch::{self, Curved, Drawn, FrameError, Frames, RayByRay, Sharing};
 use darkness::render::{coverage, mask, pixelwise};
-use darkness::scene::animation::FrameRange;
 use darkness::scene::{Animation, Scene, View};
 
 /// A built-in animation, small, so many of its frames long.

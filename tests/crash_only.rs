@@ -264,7 +264,7 @@ fn pipes_and_devices_in_the_place_of_frames_are_failures_of_these_frames() {
     let (output, stderr) = run(here, &["render", "small.toml", "-o", PATTERN]);
     assert_eq!(output.status.code(), Some(1));
     assert!(
-        stderr.contains("2-3: out/f_####.png") && stderr.contains("no regular file"),
+        stderr.contains("2-3: out/f_####.png") && stderr.contains("not a regular file"),
         "{stderr}"
     );
     done(here, &["render", "small.toml", "-o", PATTERN, "--dry-run"]);

@@ -5,9 +5,12 @@ use std::time::Instant;
 
 use clap::Args;
 
-use super::picture::Destination;
+use super::destination::{Destination, onto_input};
+use super::misuse::misuse;
 use super::progress::{Report, duration};
-use super::{Misuse, Threads, print, start_threads, target};
+use super::stdio::print;
+use super::threads::{ThreadArgs, start_threads};
+use super::writable;
 use crate::chart::{ChartData, ChartEffort, draw, write_csv};
 use crate::output::write_whole;
 use crate::scene::{DEFAULT_SCENE, Scene};
@@ -31,13 +34,13 @@ pub(super) struct ChartArgs {
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
-    threads: Threads,
+    threads: ThreadArgs,
 }
 
 /// Runs the verb.
 pub(super) fn run(args: &ChartArgs, report: Report) -> anyhow::Result<()> {
     let scene = Scene::load(&args.scene)?;
-    let destination = Destination::checked(args.output.clone(), ".svg", &args.scene)?;
+    let destination = Destination::of_picture(args.output.clone(), "svg", &args.scene)?;
     if let Some(path) = &args.csv {
         check_csv(path, &args.output, &args.scene)?;
     }
@@ -55,7 +58,7 @@ pub(super) fn run(args: &ChartArgs, report: Report) -> anyhow::Result<()> {
     let summary = format!("{}\n", chart.scene.summary());
     match destination {
         Destination::Stdout => report.note(summary.trim_end()),
-        Destination::File(_) => print(&summary)?,
+        _ => print(&summary)?,
     }
     let time = duration(start.elapsed());
     report.note(format_args!("{destination}: measured and drawn in {time}"));
@@ -66,24 +69,20 @@ pub(super) fn run(args: &ChartArgs, report: Report) -> anyhow::Result<()> {
 fn check_csv(path: &Path, figure: &Path, scene: &Path) -> anyhow::Result<()> {
     const OPTION: &str = "--csv";
     if path == Path::new("-") {
-        return Err(Misuse::CsvToStdout.into());
+        return Err(misuse(
+            "--csv needs a file's name; the CSV cannot go to the standard output",
+        ));
     }
-    if target::same_file(path, scene) {
-        return Err(Misuse::OntoInput {
-            option: OPTION,
-            path: path.to_owned(),
-            what: "scene",
-        }
-        .into());
+    if writable::same_file(path, scene) {
+        return Err(onto_input(OPTION, path, "scene"));
     }
-    if figure != Path::new("-") && target::same_place(path, figure) {
-        return Err(Misuse::OneFileForTwo {
-            path: path.to_owned(),
-        }
-        .into());
+    if figure != Path::new("-") && writable::same_place(path, figure) {
+        return Err(misuse(format!(
+            "{}: -o and --csv name the same file",
+            path.display()
+        )));
     }
-    target::check(path, OPTION)?;
-    Ok(())
+    writable::check(path, OPTION)
 }
 
 /// Measures everything, with a progress bar.

@@ -1,60 +1,63 @@
-//! `darkness job`: an animation as a job of a farm's scheduler.
+//! `darkness job`: an animation as a job for a render farm.
 
 use std::path::{Component, Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use super::destination::{has_extension, unsupported_extension};
+use super::misuse::misuse;
+use super::pattern::Pattern;
 use super::progress::Report;
-use super::render::pattern::Pattern;
-use super::{Misuse, print};
+use super::render::frames_without_number;
+use super::stdio::print;
 use crate::render::needs::Needs;
 use crate::scene::{Animation, builtins};
 use crate::table;
 
-/// Print an animation as a job for the machines of a farm
+/// Print an animation as a job for a render farm
 ///
-/// Each task renders some frames into the same folder, with one table. A frame's bytes depend on the scene, the table and its number
-/// alone, so that any machines can share the work.
+/// Each task renders some frames into the same folder, with one table. A frame's bytes depend only on the scene, the
+/// table and the frame's number, so any machines can share the work.
 #[derive(Debug, Args)]
 pub(super) struct JobArgs {
-    /// What the job is for
+    /// The scheduler
     #[arg(value_enum)]
     scheduler: Scheduler,
     /// A scene's TOML file, or the name of a built-in scene
     scene: PathBuf,
-    /// How many frames a task renders
+    /// Frames per task
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
     chunk: u32,
-    /// The frames' files, with #### in place of the number [default: frames/NAME_####.png]
+    /// The files of the frames, with #### in place of the number [default: frames/NAME_####.png]
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
-    /// The table's file [default: in tables, the one that the scene needs]
+    /// The table's file [default: the one that the scene needs, in the folder tables]
     #[arg(long, value_name = "FILE")]
     table: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Scheduler {
-    /// An Open Job Description template (2023-09), which `openjd run` and AWS Deadline Cloud take
+    /// An Open Job Description template (2023-09), for `openjd run` and AWS Deadline Cloud
     Openjd,
     /// A script for `sbatch`
     Slurm,
 }
 
-/// The tasks of an array that Slurm allows where nobody has raised its `MaxArraySize`.
+/// The tasks that Slurm allows in an array unless its `MaxArraySize` is raised.
 const SLURM_TASKS: u32 = 1001;
 
-/// The most frames that are looked at before the job is printed; each task looks at its own.
+/// The most frames that are checked before the job is printed; each task checks its own.
 const LOOKED_AT: u32 = 1_000_000;
 
 /// Runs the verb.
 pub(super) fn run(args: &JobArgs, report: Report) -> anyhow::Result<()> {
     let animation = Animation::load(&args.scene)?;
     if animation.is_still() {
-        return Err(Misuse::StillJob {
-            path: args.scene.clone(),
-        }
-        .into());
+        return Err(misuse(format!(
+            "{}: the scene has no [animation]; `darkness render` draws its one picture",
+            args.scene.display()
+        )));
     }
     let frames = animation.frames();
     for number in (1..=frames).step_by(frames.div_ceil(LOOKED_AT) as usize) {
@@ -63,9 +66,7 @@ pub(super) fn run(args: &JobArgs, report: Report) -> anyhow::Result<()> {
     let needs = Needs::of_animation(&animation)?;
     let table_name = needs.table().map_or("fine", |candidate| candidate.name);
     if needs.table().is_none() {
-        report.note(
-            "no table is good enough for some of these frames: fine is the best that there is",
-        );
+        report.note("no table is good enough for some of these frames; fine is the best there is");
     }
     let default = || table::default_path(table_name);
     let table = args.table.clone().unwrap_or_else(default);
@@ -73,24 +74,19 @@ pub(super) fn run(args: &JobArgs, report: Report) -> anyhow::Result<()> {
     let name = name.to_string_lossy();
     let default = || Path::new("frames").join(format!("{name}_####.png"));
     let output = args.output.clone().unwrap_or_else(default);
-    let is_png = output
-        .extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
-    if !is_png {
-        let (path, endings) = (output, ".png");
-        return Err(Misuse::Ending { path, endings }.into());
+    if !has_extension(&output, "png") {
+        return Err(unsupported_extension(&output, ".png"));
     }
     if Pattern::parse(&output)?.is_none() {
-        let (path, count) = (output, u64::from(frames));
-        return Err(Misuse::FramesWithoutNumber { path, count }.into());
+        return Err(frames_without_number(&output, frames.into()));
     }
     let [scene, table, output] = [&args.scene, &table, &output].map(|path| text(path));
     let (scene, table, output) = (scene?, table?, output?);
 
-    let text = match args.scheduler {
+    let (template, mut pieces) = match args.scheduler {
         Scheduler::Openjd => {
             let (folder, pattern) = output.rsplit_once('/').unwrap_or((".", &output));
-            let pieces = [
+            let pieces = vec![
                 ("SCENE", openjd_scene(&scene)),
                 ("FOLDER", default_of(folder)),
                 ("PATTERN", quoted(pattern)),
@@ -98,126 +94,93 @@ pub(super) fn run(args: &JobArgs, report: Report) -> anyhow::Result<()> {
                 ("FILE", "job.yaml".into()),
                 ("GIVEN", given(&scene, folder, &table)),
             ];
-            fill(
-                include_str!("job/openjd.yaml"),
-                &pieces,
-                args,
-                frames,
-                table_name,
-            )
+            (include_str!("job/openjd.yaml"), pieces)
         }
         Scheduler::Slurm => {
             let tasks = frames.div_ceil(args.chunk);
             if tasks > SLURM_TASKS {
                 report.note(format_args!(
-                    "an array of {tasks} tasks is more than the {SLURM_TASKS} that Slurm allows where MaxArraySize is not raised: --chunk {} would do",
+                    "an array of {tasks} tasks exceeds the {SLURM_TASKS} that Slurm allows by default (MaxArraySize); \
+                     --chunk {} would fit",
                     frames.div_ceil(SLURM_TASKS)
                 ));
             }
-            let pieces = [
+            let pieces = vec![
                 ("SCENE", shell(&scene)),
                 ("TABLE", shell(&table)),
                 ("OUT", shell(&output)),
                 ("LAST_TASK", (tasks - 1).to_string()),
                 ("FILE", "job.sh".into()),
             ];
-            fill(
-                include_str!("job/slurm.sh"),
-                &pieces,
-                args,
-                frames,
-                table_name,
-            )
+            (include_str!("job/slurm.sh"), pieces)
         }
     };
-    Ok(print(&text)?)
-}
-
-/// A path as text, which the job is: nothing that a command could take for an option.
-fn text(path: &Path) -> Result<String, Misuse> {
-    // YAML takes some more for ends of lines, and one for a mark of its own.
-    let is_odd = |c: char| {
-        c.is_control()
-            || matches!(
-                c,
-                '\u{2028}' | '\u{2029}' | '\u{feff}' | '\u{fffe}' | '\u{ffff}'
-            )
-    };
-    let text = path.to_str().filter(|text| !text.contains(is_odd));
-    let as_path = |text: &str| {
-        let before = if text.starts_with('-') { "./" } else { "" };
-        format!("{before}{text}")
-    };
-    text.map(as_path).ok_or_else(|| Misuse::UnprintablePath {
-        path: path.to_owned(),
-    })
-}
-
-/// The template with each `@KEY@` replaced, in one pass: what is put in is not looked through.
-fn fill(
-    template: &str,
-    pieces: &[(&str, String)],
-    args: &JobArgs,
-    frames: u32,
-    table_name: &str,
-) -> String {
-    let common = [
+    pieces.extend([
         ("FRAMES", frames.to_string()),
         ("CHUNK", args.chunk.to_string()),
         ("TABLE_NAME", table_name.to_owned()),
         ("TITLE", args.scene.display().to_string()),
         ("VERSION", env!("CARGO_PKG_VERSION").to_owned()),
-    ];
+    ]);
+    Ok(print(&fill(template, &pieces))?)
+}
+
+/// A path as text for a job: one line, and nothing that a command takes for an option.
+fn text(path: &Path) -> anyhow::Result<String> {
+    // YAML ends lines at the first two, and reserves the others.
+    let yaml = ['\u{2028}', '\u{2029}', '\u{feff}', '\u{fffe}', '\u{ffff}'];
+    let is_odd = |c: char| c.is_control() || yaml.contains(&c);
+    let Some(text) = path.to_str().filter(|text| !text.contains(is_odd)) else {
+        return Err(misuse(format!(
+            "{}: the name has characters that a job's text cannot hold",
+            path.display()
+        )));
+    };
+    let before = if text.starts_with('-') { "./" } else { "" };
+    Ok(format!("{before}{text}"))
+}
+
+/// Replaces each `@KEY@` of the template in one pass: inserted text is not searched.
+fn fill(template: &str, pieces: &[(&str, String)]) -> String {
     let mut text = String::with_capacity(2 * template.len());
     let mut rest = template;
     while let Some((before, after)) = rest.split_once('@') {
         text.push_str(before);
         let piece = after.split_once('@').and_then(|(key, after)| {
-            let mut all = pieces.iter().chain(&common);
-            let (_, value) = all.find(|(name, _)| *name == key)?;
-            Some((value, after))
+            let (_, value) = pieces.iter().find(|(name, _)| *name == key)?;
+            Some((value.as_str(), after))
         });
-        if let Some((value, after)) = piece {
-            text.push_str(value);
-            rest = after;
-        } else {
-            text.push('@');
-            rest = after;
-        }
+        let (value, after) = piece.unwrap_or(("@", after));
+        text.push_str(value);
+        rest = after;
     }
     text + rest
 }
 
-/// A string that is one in YAML and JSON.
+/// A string literal of JSON, which is one of YAML too.
 fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }
 
-/// A string that a shell takes as it is.
+/// A string literal of the shell.
 fn shell(text: &str) -> String {
     format!("'{}'", text.replace('\'', "'\\''"))
 }
 
-/// The scene's parameter. A built-in scene is a name and no file; the default of a file's must be a path below the
-/// template's folder.
+/// The scene's parameter: the name of a built-in scene, or a file. A file can be a default only below the template's
+/// folder.
 fn openjd_scene(scene: &str) -> String {
-    let (kind, what) = if is_builtin(scene) {
-        ("STRING", "The name of a built-in scene.")
+    let (kind, what, default) = if is_builtin(scene) {
+        let default = format!("\n    default: {}", quoted(scene));
+        ("STRING", "The name of a built-in scene.", default)
     } else {
-        (
-            "PATH\n    objectType: FILE\n    dataFlow: IN",
-            "The scene's file.",
-        )
-    };
-    let default = if is_builtin(scene) {
-        format!("\n    default: {}", quoted(scene))
-    } else {
-        default_of(scene)
+        let kind = "PATH\n    objectType: FILE\n    dataFlow: IN";
+        (kind, "The scene's file.", default_of(scene))
     };
     format!("  - name: Scene\n    type: {kind}\n    description: {what}{default}")
 }
 
-/// The line of a path's default, where it can have one.
+/// The line of a path's default, if it can be one.
 fn default_of(path: &str) -> String {
     if is_below(path) {
         format!("\n    default: {}", quoted(path))
@@ -226,7 +189,7 @@ fn default_of(path: &str) -> String {
     }
 }
 
-/// What must be given where it cannot be a default.
+/// The arguments for paths that cannot be defaults.
 fn given(scene: &str, folder: &str, table: &str) -> String {
     let mut text = String::new();
     for (name, value, is_name) in [
@@ -246,7 +209,7 @@ fn is_builtin(scene: &str) -> bool {
     builtins().iter().any(|builtin| builtin.name() == scene)
 }
 
-/// Whether a path leads to a place below the folder that it counts from.
+/// Whether a relative path stays below its folder.
 fn is_below(path: &str) -> bool {
     let mut parts = Path::new(path).components();
     parts.all(|part| matches!(part, Component::Normal(_) | Component::CurDir))

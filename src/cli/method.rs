@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::Misuse;
+use super::misuse::misuse;
 use super::progress::{Report, warn};
 use super::remedy::with_remedy;
 use crate::orbit::integrate::Adaptive;
@@ -89,10 +89,10 @@ impl MethodArgs {
     /// replaced, and a file that the user names is never created.
     pub(super) fn check(&self, needed: Option<&'static str>) -> anyhow::Result<Checked> {
         if self.integrate_tolerance.is_some() && self.method != MethodName::Integrate {
-            return Err(Misuse::ToleranceUnused.into());
+            return Err(misuse("--integrate-tolerance needs --method integrate"));
         }
         if self.no_mmap && self.method != MethodName::Table {
-            return Err(Misuse::MmapUnused.into());
+            return Err(misuse("--no-mmap needs --method table"));
         }
         let method = match self.method {
             MethodName::Exact => Method::Exact,

@@ -1,8 +1,8 @@
-//! What the user is told on the standard error: notes, warnings, and a bar for what takes long.
+//! Messages on the standard error: notes, warnings and progress.
 
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
@@ -10,29 +10,28 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressState, 
 
 use crate::quotation::printable;
 
-/// The standard error, as the user wants it.
+/// Messages on the standard error.
 ///
-/// Nothing here can fail: where the standard error takes no more, the work goes on without words (`eprintln!` would
-/// panic).
+/// Nothing here fails: if the standard error cannot be written, the work continues silently (`eprintln!` would panic).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Report {
     quiet: bool,
 }
 
 impl Report {
-    /// With `quiet`, nothing is told but what is [wrong](warn).
+    /// With `quiet`, only [warnings](warn) are printed.
     pub(super) fn new(quiet: bool) -> Self {
         Self { quiet }
     }
 
-    /// Says what happens or has been done.
+    /// Prints what happens or has been done.
     pub(super) fn note(self, message: impl Display) {
         if !self.quiet {
             let _ = writeln!(io::stderr(), "{}", readable(&message));
         }
     }
 
-    /// The progress of `total` frames of so many pixels.
+    /// The progress of `total` frames, each of `pixels` pixels.
     pub(super) fn frames(self, how: ProgressKind, total: u64, pixels: u64) -> FrameProgress {
         let kind = match how {
             _ if self.quiet => ProgressKind::None,
@@ -40,23 +39,15 @@ impl Report {
             ProgressKind::Auto => ProgressKind::Plain,
             other => other,
         };
-        let bar = (kind == ProgressKind::Auto).then(|| frame_bar(total, pixels));
-        let now = Instant::now();
         FrameProgress {
             kind,
-            bar,
+            bar: frame_bar(kind, total, pixels),
             megapixels: pixels as f64 / 1e6,
-            state: Mutex::new(Shown {
-                start: now,
-                told: now,
-                total,
-                done: 0,
-            }),
+            told: Mutex::new(Instant::now()),
         }
     }
 
-    /// A bar of `total` steps, each of them a `unit`, which vanishes when it is dropped. Nothing is drawn where the
-    /// standard error is no terminal.
+    /// A bar of `total` steps, each a `unit`, which vanishes when it is dropped. It is drawn only on a terminal.
     pub(super) fn bar(self, total: u64, what: &'static str, unit: &str) -> ProgressBar {
         let target = if self.quiet {
             ProgressDrawTarget::hidden()
@@ -73,79 +64,55 @@ impl Report {
     }
 }
 
-/// How progress is told.
+/// How progress is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum ProgressKind {
     /// A bar on a terminal, plain lines elsewhere
     Auto,
     /// A line every few seconds
     Plain,
-    /// Lines that Open Job Description's schedulers read
+    /// Lines for the schedulers of Open Job Description
     Openjd,
     /// Nothing
     None,
 }
 
-/// The progress of frames, told from several threads.
+/// The progress of frames, which several threads report.
 pub(super) struct FrameProgress {
     kind: ProgressKind,
-    bar: Option<ProgressBar>,
+    /// Counts the frames; it is drawn for [`ProgressKind::Auto`] only.
+    bar: ProgressBar,
     megapixels: f64,
-    state: Mutex<Shown>,
-}
-
-struct Shown {
-    start: Instant,
-    /// When a line was last written.
-    told: Instant,
-    /// Frames that are to be drawn, as far as is known.
-    total: u64,
-    done: u64,
+    /// When a line was last printed.
+    told: Mutex<Instant>,
 }
 
 impl FrameProgress {
-    /// A frame was drawn.
+    /// Counts a frame that was drawn.
     pub(super) fn done(&self) {
-        if let Some(bar) = &self.bar {
-            bar.inc(1);
-        } else if self.kind != ProgressKind::None {
-            self.tell(|shown| shown.done += 1);
-        }
+        self.tell(|bar| bar.inc(1));
     }
 
-    /// A frame was there already.
-    pub(super) fn passed_over(&self) {
-        if let Some(bar) = &self.bar {
-            bar.dec_length(1);
-        } else if self.kind != ProgressKind::None {
-            self.tell(|shown| shown.total = shown.total.saturating_sub(1));
-        }
+    /// Counts a frame that was finished before.
+    pub(super) fn skipped(&self) {
+        self.tell(|bar| bar.dec_length(1));
     }
 
-    /// Writes a line where it is time for one.
-    fn tell(&self, change: impl FnOnce(&mut Shown)) {
-        // Who panicked while it was locked is not here to tell.
-        let Ok(mut shown) = self.state.lock() else {
-            return;
+    /// Counts a frame, and prints a line if one is due.
+    fn tell(&self, count: impl FnOnce(&ProgressBar)) {
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        count(&self.bar);
+        let (done, total) = (self.bar.position(), self.bar.length().unwrap_or(0));
+        let is_due = match self.kind {
+            ProgressKind::Auto | ProgressKind::None => return,
+            ProgressKind::Plain => told.elapsed() >= Duration::from_secs(5),
+            ProgressKind::Openjd => told.elapsed() >= Duration::from_secs(1) || done == total,
         };
-        change(&mut shown);
-        let now = Instant::now();
-        let is_last = shown.done == shown.total;
-        let every = if self.kind == ProgressKind::Openjd {
-            1
-        } else {
-            5
-        };
-        let is_time = now - shown.told >= Duration::from_secs(every);
-        let is_told = is_time || (is_last && self.kind == ProgressKind::Openjd);
-        if !is_told {
+        if !is_due {
             return;
         }
-        shown.told = now;
-        let Shown {
-            start, total, done, ..
-        } = *shown;
-        let rate = done as f64 / (now - start).as_secs_f64();
+        *told = Instant::now();
+        let rate = done as f64 / self.bar.elapsed().as_secs_f64();
         let left = total.saturating_sub(done) as f64 / rate;
         let left = if left.is_finite() { left } else { 0.0 };
         let line = format!(
@@ -163,7 +130,13 @@ impl FrameProgress {
     }
 }
 
-fn frame_bar(total: u64, pixels: u64) -> ProgressBar {
+/// A bar that counts frames, drawn for [`ProgressKind::Auto`] only.
+fn frame_bar(kind: ProgressKind, total: u64, pixels: u64) -> ProgressBar {
+    let target = if kind == ProgressKind::Auto {
+        ProgressDrawTarget::stderr()
+    } else {
+        ProgressDrawTarget::hidden()
+    };
     let megapixels = pixels as f64 / 1e6;
     let rate = move |state: &ProgressState, out: &mut dyn std::fmt::Write| {
         let rate = state.per_sec();
@@ -176,23 +149,23 @@ fn frame_bar(total: u64, pixels: u64) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} frames, {rate}, {eta} left")
         .unwrap_or_else(|_| ProgressStyle::default_bar())
         .with_key("rate", rate);
-    ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr())
+    ProgressBar::with_draw_target(Some(total), target)
         .with_style(style)
         .with_finish(ProgressFinish::AndClear)
 }
 
-/// Says what is wrong, to whoever listens.
+/// Prints what is wrong.
 pub(super) fn warn(message: impl Display) {
     let _ = writeln!(io::stderr(), "darkness: {}", readable(&message));
 }
 
-/// A message without what terminals obey: the names of files have any characters.
+/// A message without control characters, which file names may hold.
 fn readable(message: &impl Display) -> String {
     let shown = |c| if c == '\n' { c } else { printable(c) };
     message.to_string().chars().map(shown).collect()
 }
 
-/// A time in a unit that suits it.
+/// Formats a time in milliseconds or seconds.
 pub(super) fn duration(time: Duration) -> String {
     let seconds = time.as_secs_f64();
     if seconds < 1.0 {

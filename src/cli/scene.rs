@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use clap::Args;
 
-use super::print;
-use crate::scene::builtins;
+use super::stdio::print;
+use crate::scene::{Builtin, builtins};
 
 /// List the built-in scenes, or print one as TOML to start from
 #[derive(Debug, Args)]
@@ -35,13 +35,13 @@ fn list() -> Result<String, std::fmt::Error> {
     Ok(text)
 }
 
-/// A scene's own text, comments and all.
+/// A scene's own text, with its comments.
 fn builtin(name: &str) -> anyhow::Result<&'static str> {
     let scene = builtins().iter().find(|scene| scene.name() == name);
-    scene.map(crate::scene::Builtin::toml).ok_or_else(|| {
-        let names: Vec<_> = builtins().iter().map(crate::scene::Builtin::name).collect();
+    scene.map(Builtin::toml).ok_or_else(|| {
+        let names: Vec<_> = builtins().iter().map(Builtin::name).collect();
         anyhow::anyhow!(
-            "there is no built-in scene called {name}, only {}",
+            "there is no built-in scene {name}; expected one of {}",
             names.join(", ")
         )
     })

@@ -9,9 +9,12 @@ use clap::{Args, Subcommand};
 use serde::Serialize;
 
 use super::method::{self, DEFAULT_TABLE};
+use super::misuse::misuse;
 use super::progress::{Report, duration};
 use super::remedy::with_remedy;
-use super::{Misuse, StdoutError, Threads, start_threads, target};
+use super::stdio::StdoutError;
+use super::threads::{ThreadArgs, start_threads};
+use super::writable;
 use crate::table::{self, ChartNodes, Metadata, Spec, Table, TableError, format};
 
 /// Make a table of all light rays, or inspect or verify one
@@ -32,7 +35,7 @@ pub(super) struct TableArgs {
     #[arg(long)]
     force: bool,
     #[command(flatten)]
-    threads: Threads,
+    threads: ThreadArgs,
 }
 
 #[derive(Debug, Subcommand)]
@@ -50,7 +53,7 @@ enum Action {
         /// The table's file
         file: PathBuf,
         #[command(flatten)]
-        threads: Threads,
+        threads: ThreadArgs,
     },
 }
 
@@ -71,9 +74,11 @@ fn make(args: &TableArgs, report: Report) -> anyhow::Result<()> {
     let default = || table::default_path(&args.name);
     let path = args.output.clone().unwrap_or_else(default);
     if path == Path::new("-") {
-        return Err(Misuse::TableToStdout.into());
+        return Err(misuse(
+            "a table cannot go to the standard output; name a file with -o",
+        ));
     }
-    target::check_with_parents(&path)?;
+    writable::check_with_parents(&path)?;
     if !args.force && is_made(&path, &spec)? {
         report.note(format_args!(
             "{}: the table {} is already there; nothing to do",

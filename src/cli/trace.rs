@@ -6,10 +6,13 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::destination::stdout_onto_input;
 use super::method::{DEFAULT_TABLE, Method, MethodArgs};
+use super::misuse::misuse;
 use super::progress::{Report, warn};
 use super::rays::RayReader;
-use super::{Misuse, StdoutError, start_threads, target};
+use super::stdio::{StdoutError, is_stdout};
+use super::threads::start_threads;
 use crate::orbit::exact::Exact;
 use crate::orbit::{EventKind, Fate, MIN_U, OrbitError, Orbits, Ray};
 
@@ -90,8 +93,11 @@ fn open(input: Option<&Path>) -> anyhow::Result<(Box<dyn BufRead>, String)> {
             check_is_not_written(&file, path)?;
             Ok((Box::new(BufReader::with_capacity(BUFFER, file)), name))
         }
-        // Waiting for a terminal without a word, the program would seem to hang.
-        None if io::stdin().is_terminal() => Err(Misuse::NoRays.into()),
+        // Without a word the program would seem to hang.
+        None if io::stdin().is_terminal() => Err(misuse(
+            "there are no rays to trace; name a CSV file with the columns u0 and dudphi, or send one to the standard \
+             input (`-` reads it from the terminal)",
+        )),
         _ => {
             let name = "standard input";
             if let Ok(list) = stdin() {
@@ -103,10 +109,9 @@ fn open(input: Option<&Path>) -> anyhow::Result<(Box<dyn BufRead>, String)> {
 }
 
 /// Refuses to print to the end of the list that is read, since each line would be read in its turn, without end.
-fn check_is_not_written(list: &File, name: &Path) -> Result<(), Misuse> {
-    if list.metadata().is_ok_and(|file| target::is_stdout(&file)) {
-        let (path, what) = (name.to_owned(), "list");
-        return Err(Misuse::StdoutOntoInput { path, what });
+fn check_is_not_written(list: &File, name: &Path) -> anyhow::Result<()> {
+    if list.metadata().is_ok_and(|file| is_stdout(&file)) {
+        return Err(stdout_onto_input(name, "list"));
     }
     Ok(())
 }

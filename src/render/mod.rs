@@ -29,7 +29,6 @@ pub mod mask;
 pub mod needs;
 mod path;
 pub mod pixelwise;
-pub mod png;
 mod projection;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};

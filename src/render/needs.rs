@@ -99,11 +99,4 @@ impl Needs {
     pub fn table(&self) -> Option<&Candidate> {
         self.tables.iter().find(|candidate| candidate.is_enough)
     }
-    /// What to do about a table that is not good enough, in words.
-    pub fn advice(&self) -> String {
-        self.table().map_or_else(
-            || "no table is good enough here, `--method exact` is".into(),
-            |candidate| format!("the {} table is good enough", candidate.name),
-        )
-    }
 }

@@ -1,6 +1,9 @@
-//! The scenes that come with the program.
+//! The built-in scenes.
 
-/// A scene that comes with the program.
+/// The name of the scene that is rendered where none is asked for.
+pub const DEFAULT_SCENE: &str = "classic";
+
+/// A built-in scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Builtin {
     name: &'static str,
@@ -8,17 +11,22 @@ pub struct Builtin {
 }
 
 impl Builtin {
-    /// The name it is asked for by.
+    /// The built-in scene of this name, if there is one.
+    pub(super) fn named(name: &str) -> Option<&'static Self> {
+        builtins().iter().find(|builtin| builtin.name == name)
+    }
+
+    /// Its name.
     pub fn name(&self) -> &'static str {
         self.name
     }
 
-    /// Its TOML form with comments, a file to start from.
+    /// Its TOML form with comments: a file to start from.
     pub fn toml(&self) -> &'static str {
         self.toml
     }
 
-    /// What it shows, in one line: the first comment line of its TOML form.
+    /// What it shows, in one line: the first comment of its TOML form.
     pub fn description(&self) -> &'static str {
         self.toml
             .lines()
@@ -29,7 +37,7 @@ impl Builtin {
     }
 }
 
-/// All scenes that come with the program, the default one first.
+/// The built-in scenes, [`DEFAULT_SCENE`] first.
 pub fn builtins() -> &'static [Builtin] {
     &BUILTINS
 }
@@ -58,14 +66,14 @@ static BUILTINS: [Builtin; 9] = [
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Animation, DEFAULT_SCENE, Scene, View};
+    use super::super::{Animation, Scene, View};
     use super::*;
 
     #[test]
     fn every_builtin_is_a_valid_scene_with_a_description() {
         for builtin in builtins() {
             let scene = Scene::from_toml(builtin.toml()).unwrap();
-            assert_eq!(Scene::builtin(builtin.name()), Some(scene));
+            assert_eq!(Scene::builtin(builtin.name()).unwrap(), scene);
             let again = Scene::from_toml(&scene.to_toml()).unwrap();
             assert_eq!(again.camera(), scene.camera());
             assert_eq!(again.disk(), scene.disk());

@@ -1,12 +1,13 @@
-//! A scene's TOML form: names, types and defaults. What the values may be is checked in [`validate`](super::validate).
+//! A scene's TOML form: names, types and defaults. [`validate`](super::validate) checks the values.
 
 use std::fmt;
 
-use serde::de::{Error as _, SeqAccess, Visitor};
+use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 
-use super::animation::Interpolation;
-use super::{DEFAULT_TOLERANCE, Scene, SceneError};
+use super::checked::Scene;
+use super::error::SceneError;
+use super::values::DEFAULT_TOLERANCE;
 use crate::quotation::beginning;
 
 /// The whole file.
@@ -23,10 +24,10 @@ pub(super) struct SceneFile {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CameraTable {
-    /// Left out where the animation says where the camera is.
+    /// Left out where the animation sets it.
     #[serde(default, deserialize_with = "maybe_three_numbers")]
     pub(super) position: Option<[f64; 3]>,
-    #[serde(default = "hole", deserialize_with = "three_numbers")]
+    #[serde(default, deserialize_with = "three_numbers")]
     pub(super) focus: [f64; 3],
     /// Its default depends on the animation.
     #[serde(default, deserialize_with = "maybe_three_numbers")]
@@ -44,7 +45,7 @@ pub(super) struct DiskTable {
     pub(super) normal: [f64; 3],
 }
 
-/// `[image]`. The sizes are signed so that a negative one gets the same sentence as a zero.
+/// `[image]`. The sizes are signed so that a negative one gets the same error as a zero.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ImageTable {
@@ -56,14 +57,25 @@ pub(super) struct ImageTable {
     pub(super) tolerance: f64,
 }
 
-/// `[animation]`. Frame numbers are signed as sizes are.
+/// How a quantity changes between keyframes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Interpolation {
+    /// With a continuous first derivative, from rest to rest.
+    #[default]
+    Smooth,
+    /// By the same amount each frame.
+    Linear,
+}
+
+/// `[animation]`. Frame numbers are signed, as sizes are.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct AnimationTable {
     pub(super) frames: i64,
     #[serde(default = "of_film")]
     pub(super) fps: f64,
-    #[serde(default = "smooth", deserialize_with = "smooth_or_linear")]
+    #[serde(default)]
     pub(super) interpolation: Interpolation,
     pub(super) orbit: Option<OrbitTable>,
     #[serde(default)]
@@ -74,16 +86,35 @@ pub(super) struct AnimationTable {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct OrbitTable {
-    pub(super) radius: Span,
-    pub(super) inclination: Span,
-    pub(super) azimuth: Span,
+    pub(super) radius: FromTo,
+    pub(super) inclination: FromTo,
+    pub(super) azimuth: FromTo,
 }
 
-/// What stays at a number, or changes from one to another.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Span {
+/// A number that stays, or changes from one value to another.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(from = "OneOrTwo")]
+pub(super) struct FromTo {
     pub(super) from: f64,
     pub(super) to: f64,
+}
+
+/// How a [`FromTo`] is written.
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected a number, or two as [from, to]")]
+enum OneOrTwo {
+    One(f64),
+    Two([f64; 2]),
+}
+
+impl From<OneOrTwo> for FromTo {
+    fn from(written: OneOrTwo) -> Self {
+        let [from, to] = match written {
+            OneOrTwo::One(number) => [number; 2],
+            OneOrTwo::Two(pair) => pair,
+        };
+        Self { from, to }
+    }
 }
 
 /// `[[animation.keyframe]]`.
@@ -103,54 +134,14 @@ pub(super) struct KeyframeTable {
 }
 
 impl KeyframeTable {
-    /// Whether it names nothing but its frame.
+    /// Whether it sets nothing.
     pub(super) fn is_empty(&self) -> bool {
         let vectors = [self.position, self.focus, self.up, self.normal];
         vectors.iter().all(Option::is_none) && self.fov.is_none()
     }
 }
 
-impl<'de> Deserialize<'de> for Span {
-    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
-        struct Numbers;
-
-        impl<'de> Visitor<'de> for Numbers {
-            type Value = Span;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                write!(f, "a number, or two as [from, to]")
-            }
-
-            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Span, E> {
-                Ok(Span {
-                    from: value,
-                    to: value,
-                })
-            }
-
-            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Span, E> {
-                self.visit_f64(value as f64)
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, mut numbers: A) -> Result<Span, A::Error> {
-                let mut pair = [0.0; 2];
-                for (count, number) in pair.iter_mut().enumerate() {
-                    let next = numbers.next_element()?;
-                    *number = next.ok_or_else(|| A::Error::invalid_length(count, &Self))?;
-                }
-                if numbers.next_element::<f64>()?.is_some() {
-                    return Err(A::Error::invalid_length(3, &Self));
-                }
-                let [from, to] = pair;
-                Ok(Span { from, to })
-            }
-        }
-
-        source.deserialize_any(Numbers)
-    }
-}
-
-impl fmt::Display for Span {
+impl fmt::Display for FromTo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.from == self.to {
             write!(f, "{:?}", self.from)
@@ -162,24 +153,6 @@ impl fmt::Display for Span {
 
 fn of_film() -> f64 {
     24.0
-}
-
-fn smooth() -> Interpolation {
-    Interpolation::Smooth
-}
-
-fn smooth_or_linear<'de, D: Deserializer<'de>>(source: D) -> Result<Interpolation, D::Error> {
-    match String::deserialize(source)?.as_str() {
-        "smooth" => Ok(Interpolation::Smooth),
-        "linear" => Ok(Interpolation::Linear),
-        other => Err(D::Error::custom(format_args!(
-            "the interpolation is \"smooth\" or \"linear\", not \"{other}\""
-        ))),
-    }
-}
-
-fn hole() -> [f64; 3] {
-    [0.0; 3]
 }
 
 fn yes() -> bool {
@@ -194,12 +167,12 @@ fn plus_z() -> [f64; 3] {
     [0.0, 0.0, 1.0]
 }
 
-/// A vector. (Read straight into an array, a fourth number would pass unnoticed.)
+/// Reads a vector. An array type would ignore a fourth number.
 fn three_numbers<'de, D: Deserializer<'de>>(source: D) -> Result<[f64; 3], D::Error> {
     let numbers = Vec::<f64>::deserialize(source)?;
     <[f64; 3]>::try_from(numbers).map_err(|numbers| {
         D::Error::custom(format_args!(
-            "a vector has three numbers, x, y and z, and this one has {}",
+            "a vector has three numbers, x, y and z; this one has {}",
             numbers.len()
         ))
     })
@@ -215,13 +188,12 @@ impl SceneFile {
     /// # Errors
     /// [`SceneError::Toml`], with line and column.
     pub(super) fn parse(text: &str) -> Result<Self, SceneError> {
-        toml::from_str(text).map_err(|error| SceneError::Toml {
-            message: readable(error.to_string().trim_end()),
-        })
+        toml::from_str(text)
+            .map_err(|error| SceneError::toml(readable(error.to_string().trim_end())))
     }
 }
 
-/// The parser's message fit to be read: it quotes the file, and names types as Rust does.
+/// Makes the parser's message readable: it quotes lines of any length, and names types as Rust does.
 fn readable(message: &str) -> String {
     const LONGEST: usize = 200;
     let lines = message.lines().map(|line| {
@@ -235,31 +207,32 @@ fn readable(message: &str) -> String {
 
 impl From<&Scene> for SceneFile {
     fn from(scene: &Scene) -> Self {
+        let (camera, disk) = (scene.camera(), scene.disk());
         Self {
             camera: CameraTable {
-                position: Some(scene.camera.position.to_array()),
-                focus: scene.camera.focus.to_array(),
-                up: Some(scene.camera.up.to_array()),
-                fov: scene.camera.fov_degrees,
+                position: Some(camera.position.to_array()),
+                focus: camera.focus.to_array(),
+                up: Some(camera.up.to_array()),
+                fov: camera.fov_degrees,
             },
             disk: DiskTable {
-                inner: scene.disk.inner,
-                outer: scene.disk.outer,
-                normal: scene.disk.normal.to_array(),
+                inner: disk.inner,
+                outer: disk.outer,
+                normal: disk.normal.to_array(),
             },
             image: ImageTable {
-                width: i64::from(scene.image.width),
-                height: i64::from(scene.image.height),
-                antialias: scene.antialias,
-                tolerance: scene.tolerance,
+                width: i64::from(scene.image().width),
+                height: i64::from(scene.image().height),
+                antialias: scene.antialias(),
+                tolerance: scene.tolerance(),
             },
             animation: None,
         }
     }
 }
 
-/// The TOML text. Written here and not by serde: the form is fixed, this cannot fail, and `{:?}` of a finite f64 is
-/// both valid TOML and the shortest decimal that reads back to the same bits, short also for 1e300.
+/// The TOML text. It is written by hand because pictures carry its checksum: no version of a serialiser may change it.
+/// `{:?}` of a finite f64 is valid TOML, and the shortest decimal that reads back to the same bits.
 impl fmt::Display for SceneFile {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
@@ -322,7 +295,7 @@ impl fmt::Display for AnimationTable {
     }
 }
 
-/// The line of a key that has a value.
+/// Writes the line of a key that has a value.
 fn line(f: &mut fmt::Formatter<'_>, key: &str, value: Option<impl fmt::Debug>) -> fmt::Result {
     value.map_or(Ok(()), |value| writeln!(f, "{key} = {value:?}"))
 }

@@ -2,129 +2,121 @@
 
 use glam::DVec3;
 
-use super::file::ImageTable;
+use super::error::SceneError;
+use super::values::{Camera, Disk, ImageSettings, ImageSize};
 use super::vector::{cosine, direction, norm};
-use super::{Camera, Disk, ImageSize, Scene, SceneError};
 
-/// The horizon's radius, in Schwarzschild radii: a camera stands strictly outside.
+/// The horizon's radius, in Schwarzschild radii. A camera stands outside it.
 pub const HORIZON_RADIUS: f64 = 1.0;
 
-/// The radius of the innermost stable circular orbit (6GM/c²), in Schwarzschild radii: the least inner edge of a
+/// The radius of the innermost stable circular orbit (6GM/c²), in Schwarzschild radii: the smallest inner edge of a
 /// disk.
 pub const ISCO_RADIUS: f64 = 3.0;
 
-/// The farthest a camera may stand, in Schwarzschild radii: there two points of double precision are 1/8 apart.
+/// The largest radius of a camera, in Schwarzschild radii. Two neighbouring doubles are 1/8 apart there.
 pub const FARTHEST_CAMERA: f64 = 1e15;
 
-/// The smallest vertical field of view, in degrees: far below what double precision can aim at, and far above where a pixel's
-/// square leaves it.
+/// The smallest vertical field of view, in degrees. It is far below what double precision can aim at; the square of a
+/// pixel's side is still a normal number.
 pub const NARROWEST_FOV: f64 = 1e-100;
 
-/// The largest outer edge of a disk, in Schwarzschild radii: as far as rays are followed
+/// The largest outer edge of a disk, in Schwarzschild radii: rays are followed no farther
 /// ([`MIN_U`](crate::orbit::MIN_U)).
 pub const WIDEST_DISK: f64 = 1e100;
 
 /// The most pixels on a side of a picture.
 pub const MAX_IMAGE_SIDE: i64 = 1_000_000;
 
-/// The most that an edge may be off by, in pixels: with more than one, rings as thick as a pixel are left out.
+/// The largest error of an edge that may be asked for, in pixels. A larger one would leave out rings as thick as a
+/// pixel.
 pub const MAX_TOLERANCE: f64 = 1.0;
 
-/// A camera is in the disk's plane where |n·p̂| is no more than this: the cosine of the given components is rounded
-/// by less (three products, two sums, a product of two lengths and a quotient, each by at most ε/2 of a term below
-/// 1).
+/// A camera is in the disk's plane where |n·p̂| is at most this. The cosine of the given components has a smaller
+/// rounding error: three products, two sums, a product of two lengths and a quotient, each at most ε/2 of a term below
+/// 1.
 const IN_PLANE: f64 = 4.0 * f64::EPSILON;
 
-/// A focus nearer to the camera than this share of the camera's radius is the camera's own place: the position itself
-/// is known to ε/2 in each component.
+/// A focus is the camera's own place where its distance is at most this share of the camera's radius: each component
+/// of the position is known to ε/2.
 const SAME_POINT: f64 = 4.0 * f64::EPSILON;
 
-/// The sine of the angle between the view and up at which nothing is left of `f × up`: both directions and the
-/// product's terms are rounded, together by up to about 4ε, so that less than two bits of it would be right.
+/// The view and up are parallel where the sine of their angle is at most this. Both directions and the terms of
+/// `f × up` are rounded, together by up to about 4ε, so less than two bits of the product would be right.
 const PARALLEL: f64 = 16.0 * f64::EPSILON;
 
-/// What a scene says of its pictures, checked.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Picture {
-    pub(super) size: ImageSize,
-    pub(super) antialias: bool,
-    pub(super) tolerance: f64,
-}
-
-/// What is said of the pictures.
+/// Checks a scene whose camera has the radius `radius`, in the order of a scene's file.
 ///
 /// # Errors
-/// One [`SceneError`] for the first value that is not allowed.
-pub(super) fn picture(table: &ImageTable) -> Result<Picture, SceneError> {
-    Ok(Picture {
-        tolerance: tolerance(table.tolerance)?,
-        size: image_size(table.width, table.height)?,
-        antialias: table.antialias,
-    })
-}
-
-/// The checked scene, of a camera whose position has the length `radius`.
-///
-/// # Errors
-/// One [`SceneError`] for the first value that is not allowed, in the order of the file.
-pub(super) fn scene(
-    camera: Camera,
-    radius: f64,
-    disk: Disk,
-    picture: Picture,
-) -> Result<Scene, SceneError> {
-    // What was finite may not be so any more between two keyframes.
+/// [`SceneError::Value`] for the first value that is not allowed.
+pub(super) fn scene(camera: &Camera, radius: f64, disk: &Disk) -> Result<(), SceneError> {
+    // Finite keyframes can have values between them that are not.
     finite_vector("camera.position", camera.position.to_array())?;
     finite_vector("camera.focus", camera.focus.to_array())?;
     finite_direction("camera.up", camera.up.to_array())?;
     finite_direction("disk.normal", disk.normal.to_array())?;
-    check_camera(&camera, radius)?;
-    self::disk(disk.inner, disk.outer)?;
-    if cosine(camera.position, disk.normal).abs() <= IN_PLANE
-        && disk.inner <= radius
-        && radius <= disk.outer
-    {
-        return Err(SceneError::InMatter {
-            radius,
-            inner: disk.inner,
-            outer: disk.outer,
-        });
-    }
-    let Picture {
+    check_camera(camera, radius)?;
+    edges(disk.inner, disk.outer)?;
+    let is_in_plane = cosine(camera.position, disk.normal).abs() <= IN_PLANE;
+    SceneError::check(
+        !(is_in_plane && (disk.inner..=disk.outer).contains(&radius)),
+        "camera.position",
+        camera.position.to_array(),
+        format_args!(
+            "the camera is inside the disk's matter: in the disk's plane, at radius {radius:?} between \
+             disk.inner = {:?} and disk.outer = {:?}; move it off the plane or out of the disk",
+            disk.inner, disk.outer
+        ),
+    )
+}
+
+/// Checks a picture's settings. The sizes are signed so that a negative one gets the same sentence as a zero.
+///
+/// # Errors
+/// [`SceneError::Value`] for the first value that is not allowed.
+pub(super) fn image(
+    width: i64,
+    height: i64,
+    antialias: bool,
+    tolerance: f64,
+) -> Result<ImageSettings, SceneError> {
+    self::tolerance(tolerance)?;
+    let size = image_size(width, height)?;
+    Ok(ImageSettings {
         size,
-        antialias,
-        tolerance,
-    } = picture;
-    Ok(Scene {
-        camera,
-        radius,
-        disk,
-        image: size,
         antialias,
         tolerance,
     })
 }
 
-/// What an edge may be off by, in pixels: above 0, at most [`MAX_TOLERANCE`].
+/// Checks an edge's largest error, in pixels: above 0, at most [`MAX_TOLERANCE`].
 ///
 /// # Errors
-/// [`SceneError::Tolerance`].
-pub(super) fn tolerance(pixels: f64) -> Result<f64, SceneError> {
-    if pixels > 0.0 && pixels <= MAX_TOLERANCE {
-        Ok(pixels)
-    } else {
-        Err(SceneError::Tolerance { tolerance: pixels })
-    }
+/// [`SceneError::Value`]
+pub(super) fn tolerance(pixels: f64) -> Result<(), SceneError> {
+    SceneError::check(
+        pixels > 0.0 && pixels <= MAX_TOLERANCE,
+        "image.tolerance",
+        pixels,
+        format_args!(
+            "an edge's largest error is above 0 and at most {MAX_TOLERANCE} pixel; the default is 0.001"
+        ),
+    )
 }
 
-/// The picture's size, each side between 1 and [`MAX_IMAGE_SIDE`].
+/// Checks a picture's size: each side from 1 to [`MAX_IMAGE_SIDE`] pixels.
 ///
 /// # Errors
-/// [`SceneError::ImageSide`]
+/// [`SceneError::Value`]
 pub(super) fn image_size(width: i64, height: i64) -> Result<ImageSize, SceneError> {
     let side = |key, value| match u32::try_from(value) {
         Ok(pixels) if (1..=MAX_IMAGE_SIDE).contains(&value) => Ok(pixels),
-        _ => Err(SceneError::ImageSide { key, value }),
+        _ => Err(SceneError::value(
+            key,
+            value,
+            format!(
+                "a picture's side has 1 to {MAX_IMAGE_SIDE} pixels, so that it fits common image formats"
+            ),
+        )),
     };
     Ok(ImageSize {
         width: side("image.width", width)?,
@@ -132,74 +124,93 @@ pub(super) fn image_size(width: i64, height: i64) -> Result<ImageSize, SceneErro
     })
 }
 
-/// A radius where a camera can stand.
+/// Checks the radius of a camera's position, which `key` names.
 ///
 /// # Errors
-/// [`SceneError::InsideHorizon`], [`SceneError::TooFar`].
-pub(super) fn radius(radius: f64) -> Result<(), SceneError> {
-    // Not so of what is not a number either.
-    if radius > FARTHEST_CAMERA {
-        return Err(SceneError::TooFar { radius });
-    }
-    if radius > HORIZON_RADIUS {
-        Ok(())
-    } else {
-        Err(SceneError::InsideHorizon { radius })
-    }
+/// [`SceneError::Value`]
+pub(super) fn radius(key: &'static str, position: DVec3, radius: f64) -> Result<(), SceneError> {
+    let check = |is_allowed, reason: &str| {
+        let reason = format_args!("the camera is at radius {radius:?}; {reason}");
+        SceneError::check(is_allowed, key, position.to_array(), reason)
+    };
+    check(
+        radius > HORIZON_RADIUS,
+        "a static camera needs a radius above 1, outside the horizon",
+    )?;
+    check(
+        radius <= FARTHEST_CAMERA,
+        "at most 1e15 is allowed, since double precision is too coarse farther out",
+    )
 }
 
 fn check_camera(camera: &Camera, radius: f64) -> Result<(), SceneError> {
-    self::radius(radius)?;
+    self::radius("camera.position", camera.position, radius)?;
     let view = camera.focus - camera.position;
-    if norm(view) <= SAME_POINT * radius {
-        return Err(SceneError::NoView);
-    }
-    if norm(direction(view).cross(direction(camera.up))) <= PARALLEL {
-        return Err(SceneError::UpAlongView);
-    }
-    let fov = finite("camera.fov", camera.fov_degrees)?;
-    if (NARROWEST_FOV..180.0).contains(&fov) {
-        Ok(())
-    } else {
-        Err(SceneError::Fov { fov })
-    }
+    SceneError::check(
+        norm(view) > SAME_POINT * radius,
+        "camera.focus",
+        camera.focus.to_array(),
+        "this point cannot be told apart from camera.position; the camera needs another point to look at",
+    )?;
+    SceneError::check(
+        norm(direction(view).cross(direction(camera.up))) > PARALLEL,
+        "camera.up",
+        camera.up.to_array(),
+        "this direction is parallel to the view from camera.position to camera.focus; give another one",
+    )?;
+    let fov = camera.fov_degrees;
+    SceneError::check(
+        (NARROWEST_FOV..180.0).contains(&fov),
+        "camera.fov",
+        fov,
+        format_args!(
+            "a flat picture's vertical field of view is at least {NARROWEST_FOV:e} and below 180 degrees"
+        ),
+    )
 }
 
-/// Edges that a disk can have.
+/// Checks a disk's edges.
 ///
 /// # Errors
-/// One [`SceneError`] for the first value that is not allowed.
-pub(super) fn disk(inner: f64, outer: f64) -> Result<(), SceneError> {
+/// [`SceneError::Value`] for the first value that is not allowed.
+pub(super) fn edges(inner: f64, outer: f64) -> Result<(), SceneError> {
     finite("disk.inner", inner)?;
     finite("disk.outer", outer)?;
-    if inner < ISCO_RADIUS {
-        return Err(SceneError::InnerBelowIsco { inner });
-    }
-    if outer > WIDEST_DISK {
-        return Err(SceneError::TooWide { outer });
-    }
-    if outer <= inner {
-        return Err(SceneError::NoWidth { inner, outer });
-    }
-    Ok(())
+    SceneError::check(
+        inner >= ISCO_RADIUS,
+        "disk.inner",
+        inner,
+        "no stable circular orbit exists inside 3 Schwarzschild radii (the ISCO), so no disk does",
+    )?;
+    SceneError::check(
+        outer <= WIDEST_DISK,
+        "disk.outer",
+        outer,
+        format_args!(
+            "at most {WIDEST_DISK:e} is allowed, since squares of larger radii leave double precision"
+        ),
+    )?;
+    SceneError::check(
+        outer > inner,
+        "disk.outer",
+        outer,
+        format_args!("the outer edge must be above the inner edge, disk.inner = {inner:?}"),
+    )
 }
 
-/// A number that is one.
+/// Checks that a number is finite.
 ///
 /// # Errors
-/// [`SceneError::NotFinite`]
-pub(super) fn finite(key: &'static str, value: f64) -> Result<f64, SceneError> {
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(SceneError::NotFinite { key, value })
-    }
+/// [`SceneError::Value`]
+pub(super) fn finite(key: &'static str, value: f64) -> Result<(), SceneError> {
+    let reason = "every number must be finite, between keyframes too";
+    SceneError::check(value.is_finite(), key, value, reason)
 }
 
-/// A vector of [such](finite) numbers.
+/// Checks that a vector's components are finite.
 ///
 /// # Errors
-/// [`SceneError::NotFinite`]
+/// [`SceneError::Value`]
 pub(super) fn finite_vector(key: &'static str, components: [f64; 3]) -> Result<DVec3, SceneError> {
     for value in components {
         finite(key, value)?;
@@ -207,24 +218,23 @@ pub(super) fn finite_vector(key: &'static str, components: [f64; 3]) -> Result<D
     Ok(DVec3::from_array(components))
 }
 
-/// Such a vector that points anywhere.
+/// Checks that a vector is finite and not zero.
 ///
 /// # Errors
-/// [`SceneError::NotFinite`], [`SceneError::ZeroDirection`]
+/// [`SceneError::Value`]
 pub(super) fn finite_direction(
     key: &'static str,
     components: [f64; 3],
 ) -> Result<DVec3, SceneError> {
     let v = finite_vector(key, components)?;
-    if v == DVec3::ZERO {
-        Err(SceneError::ZeroDirection { key })
-    } else {
-        Ok(v)
-    }
+    let reason = "a direction must not be the zero vector";
+    SceneError::check(v != DVec3::ZERO, key, components, reason)?;
+    Ok(v)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::Scene;
     use super::*;
 
     const GOOD: &str = "[camera]\nposition = [20.0, 0.0, 5.0]\nfocus = [0.0, 0.0, 0.0]\nup = [0.0, 0.0, 1.0]\nfov = 40.0\n\

@@ -1,8 +1,8 @@
-//! Lengths and directions that neither overflow nor underflow.
+//! Lengths and directions without overflow and underflow.
 //!
-//! A direction may have any length, so that the squares in a norm may leave the range of f64. Each vector is first
-//! divided by a power of two near its largest component, which is exact: a dot or cross product of scaled vectors is
-//! zero exactly where that of the given components is.
+//! A direction may have any length, so the squares in its norm may leave the range of f64. Each vector is first divided
+//! by a power of two near its largest component. This is exact: a dot or cross product of scaled vectors is zero
+//! exactly where that of the given vectors is.
 
 use glam::DVec3;
 
@@ -12,7 +12,7 @@ const EXPONENT_BITS: u64 = 0x7ff0_0000_0000_0000;
 /// `(v / scale, scale)`, `scale` the power of two that brings the largest component into [1, 2) (below 1 where that
 /// component is subnormal).
 pub(super) fn scaled(v: DVec3) -> (DVec3, f64) {
-    // The mantissa cleared leaves the power of two; of a subnormal it leaves 0.
+    // Clearing the mantissa leaves the power of two, or 0 for a subnormal.
     let scale =
         f64::from_bits(v.abs().max_element().to_bits() & EXPONENT_BITS).max(f64::MIN_POSITIVE);
     (v / scale, scale)
@@ -30,7 +30,7 @@ pub(super) fn direction(v: DVec3) -> DVec3 {
         return v;
     }
     let (v, _) = scaled(v);
-    // Two divisions each rounded once, not a multiplication by a rounded reciprocal.
+    // A division, since multiplying by a rounded reciprocal would round twice.
     v / v.length()
 }
 

@@ -132,6 +132,6 @@ fn the_surroundings_change_nothing() {
             &many.join(","),
         ],
         2,
-        &["--explain tells of one frame"],
+        &["--explain describes one frame"],
     );
 }

@@ -97,15 +97,15 @@ fn tolerances_that_make_no_sense_are_misuse() {
         (&["--tolerance", "2"], "at most 1 pixel"),
         (
             &["--tolerance", "0.1", "--method", "exact"],
-            "--tolerance is about isoradial curves",
+            "--tolerance needs --method table",
         ),
         (
             &["--explain", "--method", "integrate"],
-            "--explain is about isoradial curves",
+            "--explain needs --method table",
         ),
         (
             &["--antialias", "true", "--method", "exact"],
-            "--antialias is about isoradial curves",
+            "--antialias needs --method table",
         ),
         (&["--explain", "-o", "x.png"], "--explain"),
     ] {
@@ -175,7 +175,7 @@ fn render_checks_where_the_picture_goes_before_any_work() {
         ("x", 2, &[".png"]),
         ("folder.png", 1, &["folder.png is a folder"]),
         ("no/x.png", 1, &["no/x.png", "the folder no does not exist"]),
-        ("file/x.png", 1, &["file/x.png", "file is no folder"]),
+        ("file/x.png", 1, &["file/x.png", "file is not a folder"]),
     ] {
         refused(darkness(here, &["render", "-o", output]), code, words);
     }
@@ -184,7 +184,7 @@ fn render_checks_where_the_picture_goes_before_any_work() {
     refused(
         darkness(here, &["render", "-o", "/proc/x.png"]),
         1,
-        &["/proc/x.png", "nothing can be written"],
+        &["/proc/x.png", "cannot be written"],
     );
     assert_eq!(listing(here), before, "something was written");
 }

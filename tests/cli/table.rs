@@ -127,11 +127,11 @@ fn a_table_is_made_once_and_replaced_only_on_demand() {
 
     for (place, words) in [
         ("tables", "tables is a folder"),
-        ("tables/draft.table/x", "is no folder"),
+        ("tables/draft.table/x", "is not a folder"),
         #[cfg(target_os = "linux")]
-        ("/dev/null", "no regular file"),
+        ("/dev/null", "not a regular file"),
         #[cfg(target_os = "linux")]
-        ("/proc/a/b.table", "nothing can be written"),
+        ("/proc/a/b.table", "cannot be written"),
     ] {
         let args = ["table", "draft", "--force", "-o", place];
         refused(darkness(here, &args), 1, &[place, words]);

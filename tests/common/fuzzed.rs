@@ -10,6 +10,7 @@ use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 use crafted::{METADATA_AT, METADATA_LENGTH_AT, sealed};
+use darkness::cli::FrameRange;
 use darkness::cli::rays::RayReader;
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
@@ -17,7 +18,6 @@ use darkness::orbit::path::SweptAngles;
 use darkness::orbit::{Event, EventKind, Orbits, Ray};
 use darkness::render::needs::Needs;
 use darkness::render::{coverage, mask};
-use darkness::scene::animation::FrameRange;
 use darkness::scene::{Animation, Scene, View};
 use darkness::table::{Spec, Table};
 

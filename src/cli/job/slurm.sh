@@ -1,12 +1,12 @@
 #!/bin/bash
 # A Slurm array job of @FRAMES@ frames of @TITLE@, @CHUNK@ a task, printed by darkness @VERSION@.
-# Make the table once, on a disk that all nodes see, then submit, from the folder that relative paths count from:
+# Make the table once, on a disk that all nodes share, then submit. Relative paths count from the folder of the submission:
 #   darkness table @TABLE_NAME@ -o @TABLE@
 #   sbatch @FILE@
-# Or the table as a job too, and the frames after it:
+# Or make the table in a job too, with the frames after it:
 #   sbatch --dependency=afterok:"$(sbatch --parsable --array=0 @FILE@ table)" @FILE@
-# Submitted again it renders what is missing. The nodes need `darkness` on their PATH; sbatch hands on its own.
-# At most 8 tasks at once: sbatch --array=0-@LAST_TASK@%8 @FILE@
+# Submitted again, it renders what is missing. The nodes need `darkness` on their PATH; sbatch passes its own PATH on.
+# To run at most 8 tasks at once: sbatch --array=0-@LAST_TASK@%8 @FILE@
 #SBATCH --job-name=darkness
 #SBATCH --array=0-@LAST_TASK@
 #SBATCH --output=darkness-%A_%a.log
@@ -23,8 +23,8 @@ OUT=@OUT@
 LAST=@FRAMES@
 CHUNK=@CHUNK@
 
-# `exec`: Slurm's SIGTERM, 60 s before the time limit and on scancel, then reaches darkness, which finishes the frames that it
-# has begun.
+# With `exec`, Slurm's SIGTERM (60 s before the time limit, and on scancel) reaches darkness, which finishes the frames
+# that it has begun.
 if [ "${1-}" = table ]; then
   exec darkness table @TABLE_NAME@ -o "$TABLE"
 fi

@@ -1,125 +1,138 @@
 //! `darkness render --explain`: what a picture needs, and what it does not.
 
-use std::io::{self, Write};
+use std::fmt::Write as _;
 use std::path::Path;
 
-use super::super::StdoutError;
+use super::super::frame_range::FrameRange;
 use super::super::method::Method;
+use super::super::misuse::misuse;
+use super::super::progress::Report;
+use super::super::stdio::print;
+use super::super::threads::start_threads;
+use super::args::RenderArgs;
+use super::{draw, options};
 use crate::isoradial::Isoradials;
-use crate::orbit::exact::Exact;
 use crate::render::needs::{Candidate, Needs};
-use crate::scene::Scene;
+use crate::scene::{Animation, ImageSize, Scene};
 
-/// Prints what `scene` needs. `table` is the file that its angles are read from.
+/// Prints what one frame needs.
 ///
 /// # Errors
-/// The standard output does not take it.
-pub(super) fn explain(
-    scene: &Scene,
-    needs: &Needs,
-    method: &Method,
-    table: Option<&Path>,
+/// Several frames, a scene or a table that is refused, or a standard output that cannot be written.
+pub(super) fn run(
+    args: &RenderArgs,
+    animation: &Animation,
+    frames: &FrameRange,
+    report: Report,
 ) -> anyhow::Result<()> {
-    let curves = match method {
-        Method::Table(table) => Isoradials::new(&needs.sight, &table.lookup()),
-        _ => Isoradials::new(&needs.sight, &Exact),
-    };
-    let mut stdout = io::stdout().lock();
-    print(&mut stdout, scene, needs, &curves, method, table)
-        .and_then(|()| stdout.flush())
-        .map_err(StdoutError)?;
+    if args.frames.is_some() && frames.iter().nth(1).is_some() {
+        return Err(misuse(
+            "--explain describes one frame; choose one with --frames",
+        ));
+    }
+    let scene = animation.frame(frames.iter().next().unwrap_or(1))?;
+    let needs = draw::needs(&scene);
+    let needed = needs.table().map(|candidate| candidate.name);
+    let checked = args.method.check(needed)?;
+    start_threads(args.threads.threads)?;
+    let method = options::method(args, checked, report)?;
+    let table = args.method.table_path(needed);
+    let curves = draw::curves(&needs, &method);
+    print(&text(&scene, &needs, &curves, &method, table.as_deref()))?;
     Ok(())
 }
 
-fn print(
-    out: &mut impl Write,
+/// The lines of the explanation.
+fn text(
     scene: &Scene,
     needs: &Needs,
     curves: &Isoradials,
     method: &Method,
     path: Option<&Path>,
-) -> io::Result<()> {
-    let size = scene.image();
-    writeln!(
-        out,
-        "picture     {} × {}, edges to be right to {:?} pixels",
-        size.width,
-        size.height,
-        scene.tolerance()
-    )?;
-    writeln!(
-        out,
-        "edges       move by {} pixels at most for each radian that an angle is off by",
-        figure(needs.sensitivity)
-    )?;
-    let read = if let (Method::Table(table), Some(path)) = (method, path) {
-        let metadata = table.metadata();
-        writeln!(
-            out,
-            "table       {} ({}), error {:.1e} rad",
-            metadata.spec.name,
-            path.display(),
-            metadata.measured_error
-        )?;
-        table.bytes().len()
-    } else {
-        writeln!(
-            out,
-            "table       none is good enough, the curves are drawn from exact angles"
-        )?;
-        0
+) -> String {
+    let mut text = String::new();
+    let mut line = |label: &str, line: String| {
+        let _ = writeln!(text, "{label:<12}{line}");
     };
-    for candidate in &needs.tables {
-        writeln!(out, "            {}", judgement(candidate, needs))?;
+    let ImageSize { width, height } = scene.image();
+    let tolerance = scene.tolerance();
+    line(
+        "picture",
+        format!("{width} × {height}, edges to be right to {tolerance:?} pixels"),
+    );
+    let sensitivity = figure(needs.sensitivity);
+    line(
+        "edges",
+        format!("move by at most {sensitivity} pixels for each radian of error in an angle"),
+    );
+
+    let mut bytes_read = 0;
+    if let (Method::Table(table), Some(path)) = (method, path) {
+        let (metadata, path) = (table.metadata(), path.display());
+        let (name, error) = (&metadata.spec.name, metadata.measured_error);
+        line("table", format!("{name} ({path}), error {error:.1e} rad"));
+        bytes_read = table.bytes().len();
+    } else {
+        line(
+            "table",
+            "none is good enough; the curves are drawn from exact angles".into(),
+        );
     }
-    for (i, order) in curves.orders().iter().enumerate() {
-        writeln!(
-            out,
-            "{}{}: {} pixels thick at most, {} nodes",
-            if i == 0 {
-                "orders      "
-            } else {
-                "            "
-            },
-            order.number(),
-            figure(order.thickness()),
-            order.nodes()
-        )?;
+    for candidate in &needs.tables {
+        line("", judgement(candidate, needs));
+    }
+
+    let mut label = "orders";
+    for order in curves.orders() {
+        let (number, nodes) = (order.number(), order.nodes());
+        let thickness = figure(order.thickness());
+        line(
+            label,
+            format!("{number}: at most {thickness} pixels thick, {nodes} nodes"),
+        );
+        label = "";
     }
     if curves.orders().is_empty() {
-        writeln!(out, "orders      none: the disk is not in the picture")?;
+        line(label, "none: the disk is not in the picture".into());
     }
     if let Some(thin) = curves.left_out() {
-        writeln!(
-            out,
-            "            {} and up are left out, {} pixels thick or less",
-            thin.order,
-            figure(thin.thickness)
-        )?;
+        let thickness = figure(thin.thickness);
+        line(
+            "",
+            format!(
+                "{} and up are left out, at most {thickness} pixels thick",
+                thin.order
+            ),
+        );
     }
-    writeln!(
-        out,
-        "bytes       {read} of the table, for {} of curves with {} nodes, for {} of picture",
-        curves.bytes(),
-        curves.nodes(),
-        u64::from(size.width) * u64::from(size.height)
-    )?;
+
+    let (bytes, nodes) = (curves.bytes(), curves.nodes());
+    let pixels = u64::from(width) * u64::from(height);
+    line(
+        "bytes",
+        format!(
+            "{bytes_read} of the table, {bytes} of curves with {nodes} nodes, {pixels} of pixels"
+        ),
+    );
     let error = curves.error();
-    writeln!(
-        out,
-        "edge error  {} pixels at most: {} between nodes, {} from the angles, {} from rounding",
-        figure(error.total()),
-        figure(error.interpolation),
-        figure(error.angles),
-        figure(error.rounding)
-    )?;
-    writeln!(
-        out,
-        "not needed  a ray for each pixel; spin, thickness, colour and sky, which nothing here models"
-    )
+    line(
+        "edge error",
+        format!(
+            "at most {} pixels: {} between nodes, {} from the angles, {} from rounding",
+            figure(error.total()),
+            figure(error.interpolation),
+            figure(error.angles),
+            figure(error.rounding)
+        ),
+    );
+    line(
+        "not needed",
+        "a ray for each pixel; spin, thickness, colour and sky are not modelled".into(),
+    );
+    text
 }
 
-/// What a table would do to the edges, and whether that is enough.
+/// How far a table moves the edges, and whether that is good enough.
 fn judgement(candidate: &Candidate, needs: &Needs) -> String {
     let chosen = needs.table().map(|table| table.name) == Some(candidate.name);
     let verdict = match (candidate.is_enough, chosen) {
@@ -134,7 +147,7 @@ fn judgement(candidate: &Candidate, needs: &Needs) -> String {
     )
 }
 
-/// Two digits that mean something.
+/// A number with two significant digits.
 fn figure(value: f64) -> String {
     if value == 0.0 {
         "0".into()

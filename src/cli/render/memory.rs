@@ -1,54 +1,45 @@
-//! How much memory frames may take: what would take more is refused before any is asked for. (The system grants more than it has, and
-//! ends the process when it is used.)
+//! The limit on the memory of frames. The system grants more memory than it has, and kills the process that uses it, so
+//! the limit is checked first.
 
 use bytesize::ByteSize;
 
-use super::super::Misuse;
-use crate::render::batch::Sharing;
+use super::super::misuse::misuse;
 use crate::scene::ImageSize;
 
-/// What may be taken where nothing else is said.
+/// The default of `--max-memory`.
 pub(super) const DEFAULT: &str = "4GiB";
 
-/// An amount of memory, as it is written.
-pub(super) fn size(text: &str) -> Result<ByteSize, String> {
+/// Parses an amount of memory.
+pub(super) fn parse(text: &str) -> Result<ByteSize, String> {
     let size = text.parse();
-    size.map_err(|_| "an amount of memory is written with its unit: 16GiB, 500MB".into())
+    size.map_err(|_| "an amount of memory has a unit: 16GiB, 500MB".into())
 }
 
-/// Bytes for each pixel of a frame: its grey and, generously, its file's.
-const A_PIXEL: u64 = 2;
-
-/// What frames may take.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Limit(pub(super) ByteSize);
-
-impl Limit {
-    /// Whether one frame of that size can be held.
-    ///
-    /// # Errors
-    /// [`Misuse::Memory`]
-    pub(super) fn check(self, size: ImageSize) -> Result<(), Misuse> {
-        let needed = needed(size);
-        if needed <= self.0.as_u64() {
-            return Ok(());
-        }
-        Err(Misuse::Memory {
-            width: size.width,
-            height: size.height,
-            needed: ByteSize(needed),
-            allowed: self.0,
-        })
+/// Checks that one frame fits in `allowed`.
+///
+/// # Errors
+/// It does not.
+pub(super) fn check(allowed: ByteSize, size: ImageSize) -> anyhow::Result<()> {
+    let needed = of_frame(size);
+    if needed <= allowed.as_u64() {
+        return Ok(());
     }
-
-    /// How `count` frames of that size are shared out among the threads that were started.
-    pub(super) fn sharing(self, size: ImageSize, count: u64) -> Sharing {
-        Sharing::fastest(count, self.0.as_u64() / needed(size))
-    }
+    Err(misuse(format!(
+        "{} × {} pixels take about {} of memory, and {allowed} are allowed; choose a smaller picture with --size, or \
+         allow more with --max-memory",
+        size.width,
+        size.height,
+        ByteSize(needed)
+    )))
 }
 
-/// The memory for a frame, at least a byte.
-fn needed(size: ImageSize) -> u64 {
+/// How many frames fit in `allowed`.
+pub(super) fn frames_in(allowed: ByteSize, size: ImageSize) -> u64 {
+    allowed.as_u64() / of_frame(size)
+}
+
+/// The memory of a frame, in bytes, at least 1: two bytes a pixel, its grey and, generously, its share of the PNG file.
+fn of_frame(size: ImageSize) -> u64 {
     let pixels = u64::from(size.width) * u64::from(size.height);
-    pixels.saturating_mul(A_PIXEL).max(1)
+    pixels.saturating_mul(2).max(1)
 }

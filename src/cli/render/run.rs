@@ -1,151 +1,194 @@
 //! The run: frames are drawn, written and counted.
 
 use std::convert::Infallible;
+use std::fs;
 use std::time::{Duration, Instant};
 
+use super::super::destination::Destination;
 use super::super::interrupt::Interrupt;
 use super::super::method::Method;
-use super::super::picture::Destination;
-use super::super::progress::{FrameProgress, ProgressKind, Report, duration, warn};
+use super::super::pattern::Pattern;
+use super::super::progress::{FrameProgress, ProgressKind, Report};
+use super::super::writable;
+use super::draw::{Drawn, Effort, FrameSource, Workspace};
 use super::film::{Broken, Film};
-use super::memory::Limit;
-use super::output::Output;
-use super::pattern::Pattern;
-use super::plan::{Plan, origin_of};
+use super::format::Format;
+use super::memory;
+use super::plan::Plan;
+use super::png::FrameOrigin;
+use super::run_stats::RunStats;
 use super::sequence;
-use super::tally::Tally;
-use crate::render::batch::{self, Drawn, Effort, Frames, Sharing};
-use crate::render::png::Origin;
 
-/// Draws the frames of a plan.
+/// What a run did.
+pub(super) struct Outcome {
+    pub(super) stats: RunStats,
+    /// From the first frame to the last.
+    pub(super) elapsed: Duration,
+    pub(super) interrupt: Interrupt,
+}
+
+/// Draws and writes the frames of a plan. The failures of single frames of a sequence are in the outcome.
 ///
 /// # Errors
-/// Frames that could not be drawn or written; [`Interrupted`](super::super::interrupt::Interrupted).
-pub(super) fn draw(
-    plan: &Plan<'_>,
-    frames: &impl Frames,
-    method: &Method,
-    report: Report,
-) -> anyhow::Result<()> {
+/// A picture or a film that cannot be drawn or written.
+pub(super) fn run(plan: &Plan<'_>, method: &Method, report: Report) -> anyhow::Result<Outcome> {
     let interrupt = Interrupt::install()?;
-    let size = plan.first.image();
-    let pixels = u64::from(size.width) * u64::from(size.height);
-    let how = match plan.args.progress {
-        ProgressKind::Auto if plan.count == 1 => ProgressKind::None,
-        how => how,
-    };
-    let origin = origin_of(plan.animation, method);
-    let start = Instant::now();
-    if let Output::Sequence(pattern) = &plan.output {
-        plan.prepare(pattern, frames, &origin)?;
-    }
-    let run = Run {
-        plan,
-        origin,
-        progress: report.frames(how, plan.count, pixels),
-        tally: Tally::default(),
-        interrupt,
-    };
-    match &plan.output {
-        Output::Picture(destination) => run.picture(frames, destination)?,
-        Output::Sequence(pattern) => run.sequence(frames, pattern),
-        Output::Film(format, place) => {
-            let film = Film::begin(*format, place, size, plan.animation.rate())?;
-            run.film(frames, film)?;
+    let rows = report.bar(u64::from(plan.first.image().height), "drawing", "rows");
+    let row_done = || {
+        if plan.count == 1 {
+            rows.inc(1);
         }
+    };
+    let start = Instant::now();
+    let stats = FrameSource::with(plan.animation, method, &row_done, |frames| {
+        let origin = plan.origin(method);
+        if let Destination::Sequence(pattern) = &plan.destination {
+            prepare(plan, pattern, frames, &origin)?;
+        }
+        let kind = match plan.args.progress {
+            ProgressKind::Auto if plan.count == 1 => ProgressKind::None,
+            kind => kind,
+        };
+        let run = Run {
+            plan,
+            frames,
+            origin,
+            progress: report.frames(kind, plan.count, plan.pixels()),
+            stats: RunStats::default(),
+            interrupt: &interrupt,
+        };
+        match (plan.format, &plan.destination) {
+            (Format::Png, Destination::Sequence(pattern)) => run.sequence(pattern),
+            (Format::Png, destination) => run.picture(destination)?,
+            (format, destination) => {
+                let (size, rate) = (plan.first.image(), plan.animation.rate());
+                run.film(Film::begin(format, destination, size, rate)?)?;
+            }
+        }
+        anyhow::Ok(run.stats)
+    })?;
+    Ok(Outcome {
+        stats,
+        elapsed: start.elapsed(),
+        interrupt,
+    })
+}
+
+/// Makes the folder of a sequence, and checks that there is room for its files.
+fn prepare(
+    plan: &Plan<'_>,
+    pattern: &Pattern,
+    frames: &FrameSource<'_>,
+    origin: &FrameOrigin,
+) -> anyhow::Result<()> {
+    let folder = pattern.folder();
+    fs::create_dir_all(folder).map_err(|error| {
+        anyhow::anyhow!(
+            "{}: the folder cannot be made: {error}; choose another place with -o",
+            folder.display()
+        )
+    })?;
+    let present = sequence::clean_and_count(pattern, plan.frames);
+    let missing = plan.count.saturating_sub(present);
+    let most = missing.saturating_mul(plan.most_bytes());
+    if writable::free_space(folder).is_some_and(|free| most > free) {
+        // The bound is far above most files: three frames give a better estimate.
+        let bytes = missing.saturating_mul(sample(plan, frames, origin)?);
+        writable::check_space(&pattern.file(1), bytes)?;
     }
-    run.end(start, method, report)
+    Ok(())
+}
+
+/// The size of the largest file of the first, the middle and the last frame.
+fn sample(plan: &Plan<'_>, frames: &FrameSource<'_>, origin: &FrameOrigin) -> anyhow::Result<u64> {
+    let range = plan.frames;
+    let (first, last) = (range.iter().next().unwrap_or(1), range.last());
+    let middle = range.above(first.midpoint(last)).unwrap_or(last);
+    let (mut workspace, mut pixels) = (Workspace::default(), Vec::new());
+    let mut most = 0;
+    for number in [first, middle, last] {
+        frames.draw_one(number, &mut workspace, &mut pixels)?;
+        most = most.max(plan.encode(&pixels, origin)?.len() as u64);
+    }
+    Ok(most)
 }
 
 /// Frames being drawn.
 struct Run<'a> {
     plan: &'a Plan<'a>,
-    origin: Origin,
+    frames: &'a FrameSource<'a>,
+    origin: FrameOrigin,
     progress: FrameProgress,
-    tally: Tally,
-    interrupt: Interrupt,
+    stats: RunStats,
+    interrupt: &'a Interrupt,
 }
 
 impl Run<'_> {
-    /// The numbers of the frames, until the run is asked to end.
-    fn numbers(&self) -> impl Iterator<Item = u32> + Send + '_ {
-        let numbers = self.plan.frames.iter();
-        numbers.take_while(|_| !self.interrupt.is_asked())
+    /// Draws the frames that are `wanted`, until the run is interrupted.
+    fn draw<E: Send>(
+        &self,
+        wanted: impl Fn(u32) -> bool + Sync,
+        done: impl Fn(Drawn<'_>) -> Result<(), E> + Sync,
+    ) -> Result<(), E> {
+        let plan = self.plan;
+        let numbers = plan
+            .frames
+            .iter()
+            .take_while(|_| !self.interrupt.is_asked());
+        let at_a_time = memory::frames_in(plan.args.max_memory, plan.first.image());
+        self.frames
+            .draw_all(numbers, plan.count, at_a_time, wanted, done)
     }
 
-    /// How the threads share frames out.
-    fn sharing(&self) -> Sharing {
-        let limit = Limit(self.plan.args.max_memory);
-        limit.sharing(self.plan.first.image(), self.plan.count)
-    }
-
-    fn origin(&self, number: u32) -> Origin {
-        Origin {
-            frame: number,
-            ..self.origin.clone()
-        }
-    }
-
-    /// Draws the one frame into one file, or to the standard output.
-    fn picture(&self, frames: &impl Frames, destination: &Destination) -> anyhow::Result<()> {
-        batch::draw(
-            frames,
-            self.numbers(),
-            Sharing::OneByOne,
+    /// Draws one frame into one file, or to the standard output.
+    fn picture(&self, destination: &Destination) -> anyhow::Result<()> {
+        self.draw(
             |_| true,
-            |drawn| {
-                let Drawn { number, pixels, .. } = drawn;
-                let (pixels, effort) = pixels?;
-                let start = Instant::now();
-                let png = self.plan.encode(pixels, &self.origin(number))?;
-                let encoded = Instant::now();
-                destination.write(&png)?;
-                self.done(number, effort, (encoded - start, encoded.elapsed()));
-                anyhow::Ok(())
-            },
+            |drawn| self.encode_and_write(drawn, |_, png| destination.write(png)),
         )
     }
 
-    /// Draws each frame that is missing into its file. One that fails stops no other.
-    fn sequence(&self, frames: &impl Frames, pattern: &Pattern) {
+    /// Draws each missing frame into its file. A frame that fails stops no other.
+    fn sequence(&self, pattern: &Pattern) {
         let wanted = |number| {
-            let keep = !self.plan.args.overwrite
-                && sequence::is_finished(
-                    &pattern.file(number),
-                    self.plan.most_bytes(),
-                    &self.origin(number),
-                );
-            if keep {
-                self.tally.finished_before();
-                self.progress.passed_over();
+            let is_finished = self.plan.is_finished(number, &self.origin);
+            if is_finished {
+                self.stats.finished_before();
+                self.progress.skipped();
             }
-            !keep
+            !is_finished
+        };
+        // The reason without the frame's own file name: equal reasons of many frames are reported together.
+        let write = |number, png: &[u8]| {
+            sequence::write(&pattern.file(number), png, &self.plan.inputs)
+                .map_err(|error| anyhow::anyhow!("{pattern} cannot be written: {error}"))
         };
         let done = |drawn: Drawn<'_>| {
             let number = drawn.number;
-            if let Err(error) = self.write_frame(drawn, pattern) {
-                self.tally.failed(number, &error);
+            if let Err(error) = self.encode_and_write(drawn, write) {
+                self.stats.failed(number, &error);
             }
             Ok::<(), Infallible>(())
         };
-        let Ok(()) = batch::draw(frames, self.numbers(), self.sharing(), wanted, done);
+        let Ok(()) = self.draw(wanted, done);
     }
 
-    fn write_frame(&self, drawn: Drawn<'_>, pattern: &Pattern) -> anyhow::Result<()> {
-        let Drawn { number, pixels, .. } = drawn;
+    fn encode_and_write(
+        &self,
+        Drawn { number, pixels, .. }: Drawn<'_>,
+        write: impl Fn(u32, &[u8]) -> anyhow::Result<()>,
+    ) -> anyhow::Result<()> {
         let (pixels, effort) = pixels?;
         let start = Instant::now();
-        let png = self.plan.encode(pixels, &self.origin(number))?;
+        let png = self.plan.encode(pixels, &self.origin.of_frame(number))?;
         let encoded = Instant::now();
-        // The reason without the file's name: the failures of many frames are told together.
-        sequence::write(&pattern.file(number), &png, &self.plan.inputs)
-            .map_err(|error| anyhow::anyhow!("{pattern} cannot be written: {error}"))?;
-        self.done(number, effort, (encoded - start, encoded.elapsed()));
+        write(number, &png)?;
+        self.done(number, effort, encoded - start, encoded.elapsed());
         Ok(())
     }
 
     /// Draws all frames into one file or pipe.
-    fn film(&self, frames: &impl Frames, film: Film) -> anyhow::Result<()> {
+    fn film(&self, film: Film<'_>) -> anyhow::Result<()> {
         let done = |drawn: Drawn<'_>| {
             let (number, place) = (drawn.number, drawn.place);
             let (pixels, effort) = match drawn.pixels {
@@ -154,82 +197,19 @@ impl Run<'_> {
             };
             let start = Instant::now();
             film.write(place, pixels)?;
-            self.done(number, effort, (Duration::ZERO, start.elapsed()));
+            self.done(number, effort, Duration::ZERO, start.elapsed());
             Ok::<(), Broken>(())
         };
-        let drawn = batch::draw(frames, self.numbers(), self.sharing(), |_| true, done);
-        if drawn.is_ok() && self.tally.count_drawn() < self.plan.count {
-            // The run was asked to end: what is not whole is not kept.
+        let drawn = self.draw(|_| true, done);
+        if drawn.is_ok() && self.stats.counts().drawn < self.plan.count {
+            // The run was interrupted: an unfinished film is not kept.
             return Ok(());
         }
         film.finish()
     }
 
-    fn done(&self, number: u32, effort: Effort, times: (Duration, Duration)) {
-        self.tally.drawn(number, effort, times);
+    fn done(&self, number: u32, effort: Effort, encoding: Duration, writing: Duration) {
+        self.stats.drawn(number, effort, encoding, writing);
         self.progress.done();
-    }
-
-    /// Says what was done, and what went wrong.
-    fn end(self, start: Instant, method: &Method, report: Report) -> anyhow::Result<()> {
-        let Self {
-            plan,
-            progress,
-            tally,
-            interrupt,
-            ..
-        } = self;
-        drop(progress);
-        let elapsed = start.elapsed();
-        let (drawn, kept) = (tally.count_drawn(), tally.count_finished_before());
-        if drawn > 0 {
-            plan.tell_errors(&tally, report);
-        }
-        if plan.args.timings && drawn > 0 {
-            plan.tell_timings(&tally, elapsed)?;
-        }
-        let failures = tally.failures();
-        let finished = drawn + kept;
-        let stopped = interrupt.check(|| {
-            let rest = match plan.output {
-                _ if finished == plan.count => "",
-                Output::Sequence(_) => "; the same command goes on from there",
-                _ => "; nothing of an unfinished file is kept",
-            };
-            format!("{finished} of {} frames are finished{rest}", plan.count)
-        });
-        if let Some(failures) = failures {
-            if stopped.is_err() {
-                warn(&failures);
-            } else {
-                anyhow::bail!("{failures}");
-            }
-        }
-        stopped?;
-        let (output, size) = (&plan.output, plan.first.image());
-        let what = format!("{} × {}, {method}", size.width, size.height);
-        let time = duration(elapsed);
-        if drawn == 0 {
-            let all = if kept == 1 {
-                "the frame was"
-            } else {
-                "all frames were"
-            };
-            report.note(format_args!("{output}: {all} finished before"));
-            return Ok(());
-        }
-        if plan.count == 1 {
-            report.note(format_args!("{output}: {what}, drawn in {time}"));
-            return Ok(());
-        }
-        let rate = drawn as f64 / elapsed.as_secs_f64();
-        let before = match kept {
-            0 => String::new(),
-            kept => format!("; {kept} were finished before"),
-        };
-        report.note(format_args!(
-            "{output}: {drawn} frames of {what}, in {time}, {rate:.1} frames/s{before}"
-        ));
-        Ok(())
     }
 }

@@ -1,34 +1,36 @@
-//! Frames as PNG files, one each: what is finished stays, what is missing or of something else is drawn.
+//! Frames as PNG files, one each.
 
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::pattern::Pattern;
+use super::super::frame_range::FrameRange;
+use super::super::pattern::Pattern;
+use super::png::FrameOrigin;
 use crate::output::{Unfinished, leftover, remove_if_dead};
-use crate::render::png::Origin;
-use crate::scene::animation::FrameRange;
 
-/// Whether a frame's file is there, whole, and of the same origin. One of more than `most` bytes is none.
-pub(super) fn is_finished(path: &Path, most: u64, origin: &Origin) -> bool {
-    // To read a pipe is to wait for its other end.
+/// Whether a frame's file exists, is whole, and is of the same origin. A file of more than `most` bytes is not.
+pub(super) fn is_finished(path: &Path, most: u64, origin: &FrameOrigin) -> bool {
+    // Opening a pipe would wait for its writer.
     let may_be = fs::metadata(path).is_ok_and(|kind| kind.is_file() && kind.len() <= most);
     may_be && fs::read(path).is_ok_and(|file| origin.made(&file))
 }
 
-/// Writes a frame's file, whole or not at all; a link is followed, but to none of `inputs`.
+/// Writes a frame's file, whole or not at all. A link is followed, unless it leads to one of `inputs`.
 ///
 /// # Errors
-/// What the system says.
+/// What the system returns.
 pub(super) fn write(path: &Path, png: &[u8], inputs: &[PathBuf]) -> io::Result<()> {
-    // It would be replaced by a file.
+    // A pipe or a device would be replaced by a file.
     if fs::metadata(path).is_ok_and(|kind| !kind.is_file()) {
-        return Err(io::Error::other("it is there and no regular file"));
+        return Err(io::Error::other(
+            "the file exists and is not a regular file",
+        ));
     }
     let is_link = fs::symlink_metadata(path).is_ok_and(|kind| kind.is_symlink());
     if is_link && fs::canonicalize(path).is_ok_and(|led_to| inputs.contains(&led_to)) {
         return Err(io::Error::other(
-            "it is a link to the scene or the table that is read",
+            "the file is a link to the scene or the table that is read",
         ));
     }
     let mut unfinished = Unfinished::new(path)?;
@@ -36,8 +38,8 @@ pub(super) fn write(path: &Path, png: &[u8], inputs: &[PathBuf]) -> io::Result<(
     unfinished.finish()
 }
 
-/// Looks through the folder once: removes what killed processes left of these frames, and counts the frames that have a file.
-pub(super) fn look_through(pattern: &Pattern, frames: &FrameRange) -> u64 {
+/// Lists the folder once: removes what killed processes left of these frames, and counts the frames that have a file.
+pub(super) fn clean_and_count(pattern: &Pattern, frames: &FrameRange) -> u64 {
     let folder = match pattern.folder() {
         folder if folder.as_os_str().is_empty() => Path::new("."),
         folder => folder,

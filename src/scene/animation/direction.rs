@@ -1,45 +1,46 @@
 //! Directions over time: points that move on the unit sphere.
 //!
-//! Between two directions a linear motion follows the great circle at one speed. A smooth one is a cubic Bézier curve on
-//! the sphere, de Casteljau's construction with great circles in place of lines (Shoemake 1985, SIGGRAPH 19, 245): its
-//! velocity at either end is three times the arc to the control point beside it. At a direction between two others the
-//! velocity is the weighted mean that a parabola through three points has, no faster than the slower of the two arcs by more
-//! than half; at the first and the last it is 0.
+//! A linear motion follows the great circle between two directions at one speed. A smooth motion is a cubic Bézier
+//! curve on the sphere: de Casteljau's construction with great circles in place of lines (Shoemake 1985, SIGGRAPH 19,
+//! 245). Its velocity at either end is three times the arc to the neighbouring control point. At a direction between
+//! two others the velocity is that of a parabola through the three, limited to 1.5 times the slower of the two arcs. At
+//! the first and the last direction it is 0.
 
 use core::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::Interpolation;
 use super::track::{Segment, segment};
-use crate::scene::SceneError;
+use crate::scene::error::SceneError;
+use crate::scene::file::Interpolation;
 use crate::scene::vector::direction;
 
-/// Two directions are opposite where their cross product is no longer than this: rounding would choose the way from one to the other.
+/// Two directions are opposite where the length of their cross product is at most this: rounding would choose the path
+/// between them.
 const OPPOSITE: f64 = 16.0 * f64::EPSILON;
 
 /// A direction over time.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::scene) struct Directions {
     times: Vec<f64>,
-    /// As they were given: of any length.
+    /// The given vectors, of any length.
     given: Vec<DVec3>,
-    /// Their unit vectors.
+    /// The unit vectors.
     units: Vec<DVec3>,
-    /// The velocities at the times, in radians a frame; none for motion at one speed.
+    /// The velocities at the times, in radians a frame; empty for linear motion.
     velocities: Vec<DVec3>,
 }
 
 impl Directions {
-    /// One that stays.
+    /// A direction that stays.
     pub(super) fn still(direction: DVec3) -> Self {
         Self::of(&[(1.0, direction)])
     }
 
-    /// Through at least one direction, none of them zero, their times rising; `key` is what they are called.
+    /// A motion through at least one direction, none of them zero, at rising times. `key` is their name in errors.
     ///
     /// # Errors
-    /// [`SceneError::Opposite`]
+    /// [`SceneError::Value`] for opposite directions.
     pub(super) fn new(
         key: &'static str,
         keys: &[(f64, DVec3)],
@@ -47,13 +48,18 @@ impl Directions {
     ) -> Result<Self, SceneError> {
         let mut directions = Self::of(keys);
         let Self { times, units, .. } = &directions;
-        for (pair, times) in units.windows(2).zip(times.windows(2)) {
+        for (k, (pair, times)) in units.windows(2).zip(times.windows(2)).enumerate() {
             if pair[0].dot(pair[1]) < 0.0 && pair[0].cross(pair[1]).length() <= OPPOSITE {
-                return Err(SceneError::Opposite {
+                let reason = format!(
+                    "the directions at frames {} and {} are opposite, so that no path between them is the shortest; \
+                     add a keyframe between them",
+                    times[0], times[1]
+                );
+                return Err(SceneError::value(
                     key,
-                    first: times[0] as u32,
-                    second: times[1] as u32,
-                });
+                    directions.given[k + 1].to_array(),
+                    reason,
+                ));
             }
         }
         if interpolation == Interpolation::Smooth {
@@ -71,7 +77,7 @@ impl Directions {
         }
     }
 
-    /// The direction at a time; at a key's, the vector that was given.
+    /// The direction at a time; at a keyframe, the vector that was given.
     pub(in crate::scene) fn at(&self, time: f64) -> DVec3 {
         let Segment { first, span, share } = match segment(&self.times, time) {
             Ok(segment) => segment,
@@ -111,15 +117,15 @@ fn velocity(times: &[f64], units: &[DVec3], k: usize) -> DVec3 {
     }
 }
 
-/// The arc from one unit vector to another: tangent at the first, as long as their angle. None where they are one or
-/// opposite.
+/// The arc from one unit vector to another: a tangent at the first, as long as their angle. It is zero where they are
+/// equal or opposite.
 fn arc(from: DVec3, to: DVec3) -> DVec3 {
     let normal = from.cross(to);
     let angle = libm::atan2(normal.length(), from.dot(to));
     direction(normal.cross(from)) * angle
 }
 
-/// The unit vector that an arc leads to.
+/// The unit vector at the end of an arc.
 fn moved(from: DVec3, arc: DVec3) -> DVec3 {
     let angle = arc.length();
     debug_assert!(angle <= PI);
@@ -129,7 +135,7 @@ fn moved(from: DVec3, arc: DVec3) -> DVec3 {
     direction(from * libm::cos(angle) + direction(arc) * libm::sin(angle))
 }
 
-/// The unit vector after a share of the arc between two.
+/// The unit vector at a share of the arc between two.
 fn between(from: DVec3, to: DVec3, share: f64) -> DVec3 {
     moved(from, arc(from, to) * share)
 }

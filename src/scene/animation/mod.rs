@@ -1,4 +1,4 @@
-//! Scenes that move: a [`Scene`] for each frame.
+//! Moving scenes: a [`Scene`] for each frame.
 //!
 //! ```toml
 //! [animation]
@@ -15,54 +15,44 @@
 //! ```
 //!
 //! # Orbits
-//! At the radius r, inclination i and azimuth a the camera stands at `r (sin i cos a, sin i sin a, cos i)`. Where
-//! nothing else is up, `−∂position/∂i` is, which is defined at the poles too. The first frame is at `from`, the last
-//! at `to`; but where a full turn leads back to the first frame's place, all frames are equally far apart and the last
-//! one is as far before the first: the film can be shown in a loop.
+//! At radius r, inclination i and azimuth a the camera is at `r (sin i cos a, sin i sin a, cos i)`. Unless the scene
+//! sets `up`, it is `−∂position/∂i`, which is defined at the poles too. The first frame is at `from`, the last at
+//! `to`. An orbit of whole turns is different: its frames are evenly spaced, and the last is one step before the
+//! first, so that the film can loop.
 //!
 //! # Keyframes
-//! Each quantity is interpolated between the keyframes that name it, and stays before the first and after the last of
-//! them; one that no keyframe names is the scene's own. A position moves as a radius and a direction (`direction.rs`),
-//! so that between two keyframes it never comes closer to the hole than both of them.
+//! Each quantity is interpolated between the keyframes that set it. It is constant before the first and after the last
+//! of them. A quantity that no keyframe sets has the scene's own value. A position moves as a radius and a direction
+//! (`direction.rs`): between two keyframes it never comes closer to the hole than the nearer of them.
 //!
 //! # Smooth and linear
-//! A linear quantity changes by the same amount each frame. A smooth one has a continuous first derivative, is never
-//! beyond the keyframes beside it (`track.rs`), and comes from rest and to rest at its first and last keyframe.
+//! A linear quantity changes by the same amount each frame. A smooth one has a continuous first derivative, stays
+//! within the values of the keyframes on either side (`track.rs`), and is at rest at its first and last keyframe.
 
 mod direction;
 mod orbit;
 mod position;
-mod range;
 mod rate;
 mod track;
 
-use std::path::Path;
-
 use glam::DVec3;
 
-use super::file::{KeyframeTable, SceneFile};
-use super::vector::{cosine, norm};
-use super::{Camera, Disk, ImageSize, Scene, SceneError, load_text, validate};
+use super::checked::Scene;
+use super::error::SceneError;
+use super::file::{Interpolation, KeyframeTable, SceneFile};
+use super::validate;
+use super::values::{Camera, Disk, ImageSettings, ImageSize};
+use super::vector::cosine;
 use direction::Directions;
-use orbit::Orbit;
-use position::{Place, Position};
-pub use range::{FrameRange, FrameRangeError};
+use orbit::{CameraPlace, OrbitPath};
+use position::Position;
 pub use rate::Rate;
 use track::Track;
 
 /// The most frames of an animation.
 pub const MAX_FRAMES: u32 = 100_000_000;
 
-/// Between keyframes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Interpolation {
-    /// With a continuous first derivative, from rest to rest.
-    Smooth,
-    /// By the same amount each frame.
-    Linear,
-}
-
-/// A scene at each of its frames, which are numbered from 1. A scene that does not move is an animation of one frame.
+/// A scene for each frame. Frames are numbered from 1; a still scene is an animation of one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Animation {
     file: SceneFile,
@@ -75,7 +65,7 @@ pub struct Animation {
     inner: f64,
     outer: f64,
     normal: Directions,
-    picture: validate::Picture,
+    settings: ImageSettings,
 }
 
 /// What is up in the picture.
@@ -87,25 +77,12 @@ enum Up {
 }
 
 impl Animation {
-    /// Reads an animation from its TOML form: a scene's, which [its page](super) shows, with the part that is shown
-    /// [here](self).
+    /// Checks a scene's file.
     ///
     /// # Errors
-    /// Those of [`Scene::from_toml`], for whatever is wrong with all frames. What is wrong with one frame, [`Self::frame`] says.
-    pub fn from_toml(text: &str) -> Result<Self, SceneError> {
-        Self::new(SceneFile::parse(text)?)
-    }
-
-    /// The built-in scene of that name, or else the one in the TOML file at that path.
-    ///
-    /// # Errors
-    /// Those of [`Scene::load`].
-    pub fn load(path_or_name: impl AsRef<Path>) -> Result<Self, SceneError> {
-        load_text(path_or_name.as_ref(), Self::from_toml)
-    }
-
-    fn new(mut file: SceneFile) -> Result<Self, SceneError> {
-        let picture = validate::picture(&file.image)?;
+    /// [`SceneError`] for what is wrong with every frame; in a still scene, for all that is wrong.
+    pub(super) fn new(mut file: SceneFile) -> Result<Self, SceneError> {
+        let settings = settings(&file)?;
         let table = file.animation.take();
         let (frames, rate) = match &table {
             Some(table) => (frames(table.frames)?, Rate::new(table.fps)?),
@@ -117,22 +94,31 @@ impl Animation {
         let keyframes: &[KeyframeTable] = table.as_ref().map_or(&[], |table| &table.keyframe);
         check_order(keyframes, frames)?;
         let orbit = table.as_ref().and_then(|table| table.orbit.as_ref());
-        let orbit = orbit.map(|orbit| Orbit::new(orbit, frames, interpolation));
+        let orbit = orbit.map(|orbit| OrbitPath::new(orbit, frames, interpolation));
 
-        let keys = Keys {
+        let keys = Keyframes {
             keyframes,
             interpolation,
         };
-        let position = keys.vectors("position", |keyframe| keyframe.position)?;
+        let position = keys.vectors("animation.keyframe.position", |keyframe| keyframe.position)?;
         let position = match (orbit, position.as_slice(), file.camera.position) {
-            (Some(_), [_, ..], _) => return Err(SceneError::OrbitAndPosition),
+            (Some(_), [_, ..], _) => {
+                return Err(SceneError::toml(
+                    "animation.orbit and keyframes both set the camera's position; remove one of them",
+                ));
+            }
             (Some(orbit), [], _) => Position::Orbit(orbit?),
             (None, [_, ..], _) => Position::new(&position, interpolation)?,
             (None, [], Some(position)) => Position::still(position)?,
-            (None, [], None) => return Err(SceneError::NoPosition),
+            (None, [], None) => {
+                return Err(SceneError::toml(
+                    "camera.position is missing; only an animation with an orbit or with positions in its keyframes \
+                     can leave it out",
+                ));
+            }
         };
-        let focus = keys.vectors("focus", |keyframe| keyframe.focus)?;
-        let up = keys.directions("up", |keyframe| keyframe.up)?;
+        let focus = keys.vectors("animation.keyframe.focus", |keyframe| keyframe.focus)?;
+        let up = keys.directions("animation.keyframe.up", |keyframe| keyframe.up)?;
         if !matches!(position, Position::Orbit(_)) {
             file.camera.up.get_or_insert([0.0, 0.0, 1.0]);
         }
@@ -144,8 +130,10 @@ impl Animation {
             )?)),
             (None, None) => Up::OfOrbit,
         };
-        let fov = keys.named("fov", |keyframe| keyframe.fov.map(|fov| [fov]))?;
-        let normal = keys.directions("normal", |keyframe| keyframe.normal)?;
+        let fov = keys.named("animation.keyframe.fov", |keyframe| {
+            keyframe.fov.map(|fov| [fov])
+        })?;
+        let normal = keys.directions("animation.keyframe.normal", |keyframe| keyframe.normal)?;
         let focus_of_scene = validate::finite_vector("camera.focus", file.camera.focus)?;
         let normal_of_scene = validate::finite_direction("disk.normal", file.disk.normal)?;
         let animation = Self {
@@ -158,44 +146,44 @@ impl Animation {
             inner: file.disk.inner,
             outer: file.disk.outer,
             normal: normal.unwrap_or_else(|| Directions::still(normal_of_scene)),
-            picture,
+            settings,
             file: SceneFile {
                 animation: table,
                 ..file
             },
         };
-        validate::disk(animation.inner, animation.outer)?;
+        validate::edges(animation.inner, animation.outer)?;
         if animation.is_still() {
             animation.frame(1)?;
         }
         Ok(animation)
     }
 
-    /// How many frames there are; they are numbered from 1.
+    /// The number of frames.
     pub fn frames(&self) -> u32 {
         self.frames
     }
 
-    /// How fast the frames follow each other.
+    /// The frame rate.
     pub fn rate(&self) -> Rate {
         self.rate
     }
 
-    /// The size of its frames.
+    /// The size of every frame.
     pub fn image(&self) -> ImageSize {
-        self.picture.size
+        self.settings.size
     }
 
-    /// Whether the scene says nothing of an animation: it has one frame then.
+    /// Whether the scene has no `[animation]`: it has one frame then.
     pub fn is_still(&self) -> bool {
         self.file.animation.is_none()
     }
 
-    /// The scene at frame `number`.
+    /// The scene of frame `number`.
     ///
     /// # Errors
-    /// [`SceneError::NoFrame`] for a number that is not from 1 to [`Self::frames`]; [`SceneError::InFrame`] for a
-    /// camera that stands where none can stand, or does not look anywhere.
+    /// [`SceneError::NoFrame`] for a number outside 1 to [`Self::frames`]; [`SceneError::InFrame`] for a camera that
+    /// is inside the horizon or the disk, or that looks nowhere.
     pub fn frame(&self, number: u32) -> Result<Scene, SceneError> {
         if !(1..=self.frames).contains(&number) {
             return Err(SceneError::NoFrame {
@@ -204,7 +192,7 @@ impl Animation {
             });
         }
         let time = f64::from(number);
-        let Place {
+        let CameraPlace {
             position,
             radius,
             up,
@@ -223,30 +211,26 @@ impl Animation {
             outer: self.outer,
             normal: self.normal.at(time),
         };
-        validate::scene(camera, radius, disk, self.picture).map_err(|error| {
+        Scene::at_radius(camera, radius, disk, self.settings).map_err(|error| {
             if self.is_still() {
                 error
             } else {
-                SceneError::InFrame {
-                    number,
-                    error: Box::new(error),
-                }
+                error.in_frame(number)
             }
         })
     }
 
-    /// Checks frame `number` and the way to the next: a camera that is above the disk's matter at one frame and below
-    /// at the next has gone through.
+    /// Checks frame `number`, and that the camera does not pass through the disk on its way to the next frame.
     ///
     /// # Errors
-    /// Those of [`Self::frame`], and [`SceneError::ThroughMatter`].
-    pub fn check(&self, number: u32) -> Result<(), SceneError> {
-        self.frame(number)?;
+    /// Those of [`Self::frame`], and [`SceneError::InFrame`] for a camera that passes through the disk.
+    pub fn check(&self, number: u32) -> Result<Scene, SceneError> {
+        let scene = self.frame(number)?;
         let (mut before, mut after) = (f64::from(number), f64::from(number) + 1.0);
         let side = |time| cosine(self.position.at(time).position, self.normal.at(time));
         let first = side(before);
         if number == self.frames || first * side(after) >= 0.0 {
-            return Ok(());
+            return Ok(scene);
         }
         for _ in 0..50 {
             let middle = 0.5 * (before + after);
@@ -256,93 +240,106 @@ impl Animation {
                 after = middle;
             }
         }
-        let radius = self.position.at(after).radius;
+        let CameraPlace {
+            position, radius, ..
+        } = self.position.at(after);
         if (self.inner..=self.outer).contains(&radius) {
-            return Err(SceneError::ThroughMatter {
-                number,
-                radius,
-                inner: self.inner,
-                outer: self.outer,
-            });
+            let reason = format!(
+                "on the way to the next frame the camera passes through the disk's matter, at radius {radius:.6} \
+                 between disk.inner = {:?} and disk.outer = {:?}; lead it past the disk",
+                self.inner, self.outer
+            );
+            let error = SceneError::value("camera.position", position.to_array(), reason);
+            return Err(error.in_frame(number));
         }
-        Ok(())
+        Ok(scene)
     }
 
     /// The same animation as pictures of another size; the vertical field of view stays.
     ///
     /// # Errors
-    /// [`SceneError::ImageSide`] for a size that is not allowed.
+    /// [`SceneError::Value`] for a size that is not allowed.
     pub fn with_size(mut self, width: u32, height: u32) -> Result<Self, SceneError> {
         (self.file.image.width, self.file.image.height) = (i64::from(width), i64::from(height));
-        self.with_picture()
+        self.with_settings()
     }
 
-    /// The same animation with its edges right to so many pixels.
+    /// The same animation with its edges right to `pixels`.
     ///
     /// # Errors
-    /// [`SceneError::Tolerance`] for a tolerance that is not allowed.
+    /// [`SceneError::Value`] for a tolerance that is not allowed.
     pub fn with_tolerance(mut self, pixels: f64) -> Result<Self, SceneError> {
         self.file.image.tolerance = pixels;
-        self.with_picture()
+        self.with_settings()
     }
 
-    /// The same animation with smooth edges or with hard ones.
+    /// The same animation with smooth edges, or with hard ones.
     ///
     /// # Errors
     /// None that the animation does not have already.
     pub fn with_antialias(mut self, antialias: bool) -> Result<Self, SceneError> {
         self.file.image.antialias = antialias;
-        self.with_picture()
+        self.with_settings()
     }
 
-    fn with_picture(self) -> Result<Self, SceneError> {
-        Ok(Self {
-            picture: validate::picture(&self.file.image)?,
-            ..self
-        })
+    fn with_settings(mut self) -> Result<Self, SceneError> {
+        self.settings = settings(&self.file)?;
+        Ok(self)
     }
 
-    /// The animation's TOML form with every key written out that has a value: two animations are the same if theirs are.
+    /// The animation's TOML form, with every key that has a value. Two animations are the same if their forms are.
     pub fn to_toml(&self) -> String {
         self.file.to_string()
     }
 }
 
-/// How many frames an animation has.
+/// Checks the settings of the pictures.
+fn settings(file: &SceneFile) -> Result<ImageSettings, SceneError> {
+    let image = &file.image;
+    validate::image(image.width, image.height, image.antialias, image.tolerance)
+}
+
+/// Checks the number of frames.
 fn frames(frames: i64) -> Result<u32, SceneError> {
     u32::try_from(frames)
         .ok()
         .filter(|count| (1..=MAX_FRAMES).contains(count))
-        .ok_or(SceneError::Frames { frames })
+        .ok_or_else(|| {
+            let reason = format!("an animation has 1 to {MAX_FRAMES} frames");
+            SceneError::value("animation.frames", frames, reason)
+        })
 }
 
-/// Keyframes stand in order, within the animation.
+/// Checks that keyframes are in order and within the animation, and that each sets something.
 fn check_order(keyframes: &[KeyframeTable], frames: u32) -> Result<(), SceneError> {
     let mut before = 0;
     for keyframe in keyframes {
         let number = keyframe.frame;
+        let wrong = |reason| SceneError::value("animation.keyframe.frame", number, reason);
         if number < 1 || number > i64::from(frames) {
-            return Err(SceneError::KeyframeOutside { number, frames });
+            return Err(wrong(format!("the animation has frames 1 to {frames}")));
         }
         if number <= before {
-            return Err(SceneError::KeyframeOrder { number, before });
+            let reason = format!("it must be above frame {before}, the keyframe before it");
+            return Err(wrong(reason));
         }
         if keyframe.is_empty() {
-            return Err(SceneError::KeyframeEmpty { number });
+            let error = "the keyframe sets nothing; give it a position, focus, up, fov or normal";
+            return Err(SceneError::toml(error).in_frame(number as u32));
         }
         before = number;
     }
     Ok(())
 }
 
-/// The keyframes, and what is between them.
-struct Keys<'a> {
+/// The keyframes, and how values change between them.
+struct Keyframes<'a> {
     keyframes: &'a [KeyframeTable],
     interpolation: Interpolation,
 }
 
-impl Keys<'_> {
-    /// The values of the keyframes that name a quantity, with their times.
+impl Keyframes<'_> {
+    /// The values of a quantity in the keyframes that set it, with their times. `key` is its name in errors.
     fn named<const N: usize>(
         &self,
         key: &'static str,
@@ -355,7 +352,8 @@ impl Keys<'_> {
         named
             .map(|(number, value)| {
                 for component in value {
-                    validate::finite(key, component).map_err(|error| in_keyframe(number, error))?;
+                    validate::finite(key, component)
+                        .map_err(|error| error.in_frame(number as u32))?;
                 }
                 Ok((number as f64, value))
             })
@@ -376,34 +374,19 @@ impl Keys<'_> {
         value: impl Fn(&KeyframeTable) -> Option<[f64; 3]>,
     ) -> Result<Option<Directions>, SceneError> {
         let named = self.vectors(key, value)?;
-        let named: Vec<_> = named
-            .into_iter()
-            .map(|(time, value)| (time, DVec3::from_array(value)))
-            .collect();
-        for &(time, value) in &named {
-            if value == DVec3::ZERO {
-                return Err(in_keyframe(time as i64, SceneError::ZeroDirection { key }));
-            }
-        }
+        let checked = named.into_iter().map(|(time, value)| {
+            let direction = validate::finite_direction(key, value);
+            Ok((
+                time,
+                direction.map_err(|error| error.in_frame(time as u32))?,
+            ))
+        });
+        let named: Vec<_> = checked.collect::<Result<_, SceneError>>()?;
         if named.is_empty() {
             return Ok(None);
         }
         Directions::new(key, &named, self.interpolation).map(Some)
     }
-}
-
-fn in_keyframe(number: i64, error: SceneError) -> SceneError {
-    SceneError::InKeyframe {
-        number,
-        error: Box::new(error),
-    }
-}
-
-/// The radius of a keyframe's position, where a camera can stand.
-fn radius_at(time: f64, position: DVec3) -> Result<f64, SceneError> {
-    let radius = norm(position);
-    validate::radius(radius).map_err(|error| in_keyframe(time as i64, error))?;
-    Ok(radius)
 }
 
 #[cfg(test)]

@@ -1,22 +1,34 @@
-//! The short form of a camera's path: radius, inclination and azimuth, each from here to there.
+//! A camera's path as radius, inclination and azimuth, each from one value to another.
 
 use glam::DVec3;
 
-use super::Interpolation;
-use super::position::Place;
 use super::track::Track;
-use crate::scene::file::OrbitTable;
-use crate::scene::{SceneError, validate};
+use crate::scene::error::SceneError;
+use crate::scene::file::{Interpolation, OrbitTable};
+use crate::scene::validate;
+
+/// Where the camera is at one time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct CameraPlace {
+    pub(super) position: DVec3,
+    /// |position| without the rounding of the position's components: a camera that stays at one radius has the same
+    /// value, to the last bit, in each frame.
+    pub(super) radius: f64,
+    /// `−∂position/∂inclination`, for an orbit.
+    pub(super) up: DVec3,
+}
 
 /// Radius in Schwarzschild radii, inclination from +z and azimuth from +x in degrees, over time.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Orbit {
+pub(super) struct OrbitPath {
     of_time: Track<3>,
 }
 
-impl Orbit {
+impl OrbitPath {
+    /// The path that `table` describes, over `frames` frames.
+    ///
     /// # Errors
-    /// [`SceneError::NotFinite`]
+    /// [`SceneError::Value`] for a number that is not finite.
     pub(super) fn new(
         table: &OrbitTable,
         frames: u32,
@@ -36,7 +48,7 @@ impl Orbit {
         let is_closed = radius.from == radius.to
             && angles.iter().all(|angle| turns(angle.from, angle.to))
             && angles.iter().any(|angle| angle.from != angle.to);
-        // A closed orbit arrives where it began one frame after the last, and does not stop there.
+        // A closed orbit returns to its start one frame after the last, and does not come to rest there.
         let (end, interpolation) = if is_closed {
             (frames + 1, Interpolation::Linear)
         } else {
@@ -54,12 +66,12 @@ impl Orbit {
         })
     }
 
-    /// Where the camera is at a time, and `−∂position/∂inclination` there, which is up.
-    pub(super) fn at(&self, time: f64) -> Place {
+    /// The camera's place at a time.
+    pub(super) fn at(&self, time: f64) -> CameraPlace {
         let [radius, inclination, azimuth] = self.of_time.at(time);
         let (sin_i, cos_i) = sine_and_cosine(inclination);
         let (sin_a, cos_a) = sine_and_cosine(azimuth);
-        Place {
+        CameraPlace {
             position: DVec3::new(sin_i * cos_a, sin_i * sin_a, cos_i) * radius,
             radius,
             up: DVec3::new(-cos_i * cos_a, -cos_i * sin_a, sin_i),
@@ -67,9 +79,9 @@ impl Orbit {
     }
 }
 
-/// Sine and cosine of an angle in degrees, exact at the multiples of 90: a camera at 90° is in the disk's plane, and not almost.
+/// Sine and cosine of an angle in degrees, exact at multiples of 90: a camera at 90° is exactly in the disk's plane.
 fn sine_and_cosine(degrees: f64) -> (f64, f64) {
-    // Exact, as the remainder is and the nearest multiple of 90 is no farther than twice away.
+    // Both are exact: a remainder is, and so is a difference of two numbers within a factor of two.
     let turned = degrees % 360.0;
     let quarters = libm::rint(turned / 90.0);
     let rest = (turned - 90.0 * quarters).to_radians();

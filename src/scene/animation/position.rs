@@ -1,24 +1,25 @@
-//! Where the camera stands over time.
+//! The camera's place over time.
 
 use glam::DVec3;
 
 use super::direction::Directions;
-use super::orbit::Orbit;
+use super::orbit::{CameraPlace, OrbitPath};
 use super::track::{Track, segment};
-use super::{Interpolation, radius_at};
+use crate::scene::error::SceneError;
+use crate::scene::file::Interpolation;
+use crate::scene::validate;
 use crate::scene::vector::{direction, norm};
-use crate::scene::{SceneError, validate};
 
-/// Radii that differ by no more than this share are one: rounding alone makes cameras of one radius differ by as much, and what
-/// is drawn for one radius serves all frames of it.
+/// Radii that differ by at most this share are taken as equal. Rounding alone makes the radii of rotated positions
+/// differ by as much, and frames of one radius share their curves.
 const SAME_RADIUS: f64 = 4.0 * f64::EPSILON;
 
-/// Where the camera stands.
+/// The camera's place over time.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Position {
-    /// On a short form's orbit.
-    Orbit(Orbit),
-    /// Through keyframes, or in one place.
+    /// On an orbit.
+    Orbit(OrbitPath),
+    /// Through keyframes, or at one place.
     Keyframes {
         times: Vec<f64>,
         /// As they were given.
@@ -28,26 +29,16 @@ pub(super) enum Position {
     },
 }
 
-/// Where the camera stands at one time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Place {
-    pub(super) position: DVec3,
-    /// |position|, without the rounding of the position's components: a camera that stays at a radius has the same one to the
-    /// last bit in each frame.
-    pub(super) radius: f64,
-    /// `−∂position/∂inclination`, for an orbit.
-    pub(super) up: DVec3,
-}
-
 impl Position {
-    /// One that stays.
+    /// A camera that stays.
     ///
     /// # Errors
-    /// [`SceneError`] for a place where no camera can stand.
+    /// [`SceneError::Value`] for a place where no camera can be.
     pub(super) fn still(position: [f64; 3]) -> Result<Self, SceneError> {
-        let position = validate::finite_vector("camera.position", position)?;
+        const KEY: &str = "camera.position";
+        let position = validate::finite_vector(KEY, position)?;
         let radius = norm(position);
-        validate::radius(radius)?;
+        validate::radius(KEY, position, radius)?;
         Ok(Self::Keyframes {
             times: vec![1.0],
             given: vec![position],
@@ -59,16 +50,18 @@ impl Position {
     /// Through at least one keyframe, their times rising.
     ///
     /// # Errors
-    /// [`SceneError`] for a place where no camera can stand, and for two on opposite sides of the hole.
+    /// [`SceneError`] for a place where no camera can be, and for two on opposite sides of the hole.
     pub(super) fn new(
         keys: &[(f64, [f64; 3])],
         interpolation: Interpolation,
     ) -> Result<Self, SceneError> {
+        const KEY: &str = "animation.keyframe.position";
         let given: Vec<DVec3> = keys.iter().map(|key| DVec3::from_array(key.1)).collect();
         let mut radii: Vec<(f64, [f64; 1])> = Vec::with_capacity(keys.len());
         let mut directions = Vec::with_capacity(keys.len());
         for (&(time, _), &position) in keys.iter().zip(&given) {
-            let radius = radius_at(time, position)?;
+            let radius = norm(position);
+            validate::radius(KEY, position, radius).map_err(|error| error.in_frame(time as u32))?;
             let radius = match radii.last() {
                 Some(&(_, [before])) if (radius - before).abs() <= SAME_RADIUS * before => before,
                 _ => radius,
@@ -80,12 +73,12 @@ impl Position {
             times: keys.iter().map(|key| key.0).collect(),
             given,
             radius: Track::new(&radii, interpolation),
-            direction: Directions::new("position", &directions, interpolation)?,
+            direction: Directions::new(KEY, &directions, interpolation)?,
         })
     }
 
     /// The place at a time.
-    pub(super) fn at(&self, time: f64) -> Place {
+    pub(super) fn at(&self, time: f64) -> CameraPlace {
         match self {
             Self::Orbit(orbit) => orbit.at(time),
             Self::Keyframes {
@@ -99,7 +92,7 @@ impl Position {
                     Ok(_) => direction(directions.at(time)) * radius,
                     Err(key) => given[key],
                 };
-                Place {
+                CameraPlace {
                     position,
                     radius,
                     up: DVec3::Z,

@@ -1,18 +1,18 @@
-//! How fast frames follow each other.
+//! The frame rate of a film.
 
 use core::fmt;
 
-use crate::scene::SceneError;
+use crate::scene::error::SceneError;
 
 /// The most frames a second.
 const FASTEST: f64 = 1000.0;
 
-/// Frames a second, as a fraction: what films' files hold.
+/// Frames a second, as a fraction, as video files store it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rate {
-    /// So many frames …
+    /// The numerator.
     pub frames: u32,
-    /// … in so many seconds.
+    /// The denominator.
     pub seconds: u32,
 }
 
@@ -27,19 +27,20 @@ impl Default for Rate {
 }
 
 impl Rate {
-    /// The fraction that `fps` is meant as: 23.976, 29.97 and 59.94 are 24000/1001, 30000/1001 and 60000/1001, as
-    /// television has them; all else is taken to a thousandth.
+    /// The fraction that `fps` stands for: 24000/1001, 30000/1001 and 60000/1001 for television's 23.976, 29.97 and
+    /// 59.94, else `fps` rounded to a thousandth.
     ///
     /// # Errors
-    /// [`SceneError::Fps`] where it is not from 0.001 to 1000.
+    /// [`SceneError::Value`] for a rate outside 0.001 to 1000.
     pub fn new(fps: f64) -> Result<Self, SceneError> {
         let thousandths = libm::rint(fps * 1000.0);
         if !(1.0..=1000.0 * FASTEST).contains(&thousandths) {
-            return Err(SceneError::Fps { fps });
+            let reason = "the frame rate is 0.001 to 1000 frames a second; the default is 24";
+            return Err(SceneError::value("animation.fps", fps, reason));
         }
         for whole in [24, 30, 48, 60, 120] {
             let television = f64::from(whole) / 1.001;
-            // As many digits as people write.
+            // Within the last digit that is usually written.
             if (fps - television).abs() < 0.0006 * television / 24.0 {
                 return Ok(Self {
                     frames: whole * 1000,

@@ -12,7 +12,7 @@ fn animation(camera: &str, animation: &str) -> Result<Animation, SceneError> {
 /// Asserts that a sentence with all of `words` refuses the animation or, if not, one of its frames.
 fn refused(camera: &str, text: &str, words: &[&str]) {
     let checked = animation(camera, text).and_then(|animation| {
-        (1..=animation.frames()).try_for_each(|number| animation.check(number))
+        (1..=animation.frames()).try_for_each(|number| animation.check(number).map(drop))
     });
     let message = checked.expect_err(text).to_string();
     for word in words {

@@ -1,22 +1,22 @@
 //! Numbers over time, through given values at given times.
 //!
-//! Smooth between them is a piecewise cubic Hermite interpolant with the slopes of Fritsch & Butland (1984), SIAM J. Sci.
-//! Stat. Comput. 5, 300: between two times it never leaves the interval of their values, and it stands still where the
-//! values turn. At the first and the last time its slope is 0, as it is before and after.
+//! The smooth interpolant is a piecewise cubic Hermite polynomial with the slopes of Fritsch & Butland (1984), SIAM J.
+//! Sci. Stat. Comput. 5, 300. Between two times it stays within the interval of their values; its slope is 0 where the
+//! values turn, and at the first and the last time.
 
-use super::Interpolation;
+use crate::scene::file::Interpolation;
 
-/// `N` numbers over time, each by itself.
+/// `N` independent numbers over time.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Track<const N: usize> {
     times: Vec<f64>,
     values: Vec<[f64; N]>,
-    /// The slopes at the times; none for straight lines between them.
+    /// The slopes at the times; empty for linear motion.
     slopes: Vec<[f64; N]>,
 }
 
 impl<const N: usize> Track<N> {
-    /// Through at least one value, their times rising.
+    /// A track through at least one value, at rising times.
     pub(super) fn new(keys: &[(f64, [f64; N])], interpolation: Interpolation) -> Self {
         let times: Vec<f64> = keys.iter().map(|key| key.0).collect();
         let values: Vec<[f64; N]> = keys.iter().map(|key| key.1).collect();
@@ -33,7 +33,7 @@ impl<const N: usize> Track<N> {
         }
     }
 
-    /// The same, of keys that may be none: then a value that stays.
+    /// The same; without keys, a track that stays at `value`.
     pub(super) fn or_still(
         keys: &[(f64, [f64; N])],
         value: [f64; N],
@@ -64,23 +64,26 @@ impl<const N: usize> Track<N> {
                     from + share * (a + share * (square + share * cube))
                 }
             };
-            // Beyond by its rounding only.
+            // Only rounding can take it outside.
             value.clamp(from.min(to), from.max(to))
         })
     }
 }
 
-/// A place between two of several times.
+/// A time between two of several times.
 pub(super) struct Segment {
-    /// The index of the earlier.
+    /// The index of the earlier time.
     pub(super) first: usize,
     /// The time between them.
     pub(super) span: f64,
-    /// The share of it that has passed.
+    /// The share of the span that has passed.
     pub(super) share: f64,
 }
 
-/// Between which of the times a time is, or at which of them, or beyond which.
+/// Finds the two times on either side of `time`.
+///
+/// # Errors
+/// The index of the time that it equals, or beyond which it is.
 pub(super) fn segment(times: &[f64], time: f64) -> Result<Segment, usize> {
     let after = times.partition_point(|&key| key <= time);
     if after == 0 {

@@ -3,74 +3,61 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use crate::cli::Misuse;
+use super::misuse::misuse;
 use crate::output::LONGEST_NAME;
 
-/// The most digits that a number is filled up to.
+/// The most digits that a number can be padded to.
 const WIDEST: usize = 20;
+
+/// The digits of the largest number.
+const MOST_DIGITS: usize = 10;
+
+const TWO_NUMBERS: &str = "the frame's number has two places in the name; leave one";
 
 /// The files of a sequence: one for each frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(in crate::cli) struct Pattern {
+pub(super) struct Pattern {
     folder: PathBuf,
     before: String,
     width: usize,
     after: String,
-    /// As it was given.
+    /// The pattern as it was given.
     path: PathBuf,
 }
 
 impl Pattern {
-    /// The pattern that a path is, if its file's name has a place for the number: a row of `#`, or printf's `%d` and
-    /// `%04d`. Of several rows of `#` it is the last.
+    /// The pattern of a path whose file name has a place for the number: a row of `#` (the last, of several), or
+    /// printf's `%d` or `%04d`. [`None`] for a name without.
     ///
     /// # Errors
-    /// [`Misuse`] for a number in a folder's name, for two, and for one that is too wide.
-    pub(in crate::cli) fn parse(path: &Path) -> Result<Option<Self>, Misuse> {
+    /// A number in a folder's name, two numbers, a number that is too wide, or a name that is too long.
+    pub(super) fn parse(path: &Path) -> anyhow::Result<Option<Self>> {
+        let wrong = |problem: &str| Err(misuse(format!("{}: {problem}", path.display())));
         let folder = path.parent().unwrap_or(Path::new(""));
         let Some(name) = path.file_name().and_then(|name| name.to_str()) else {
             return Ok(None);
         };
         let place = match (hashes(name), percent(name)) {
-            (Some(_), Some(_)) => {
-                return Err(Misuse::TwoNumbers {
-                    path: path.to_owned(),
-                });
-            }
-            (Some(place), None) | (None, Some(place)) => Some(place),
-            (None, None) => None,
+            (Some(_), Some(_)) => return wrong(TWO_NUMBERS),
+            (_, Some((_, end, _))) if percent(&name[end..]).is_some() => return wrong(TWO_NUMBERS),
+            (place, None) | (None, place) => place,
         };
-        let second = percent(name).is_some_and(|(_, end, _)| percent(&name[end..]).is_some());
-        if second {
-            return Err(Misuse::TwoNumbers {
-                path: path.to_owned(),
-            });
-        }
-        let numbered = |folder: &str| hashes(folder).is_some() || percent(folder).is_some();
-        if place.is_none()
-            && folder
-                .iter()
-                .any(|part| part.to_str().is_some_and(numbered))
-        {
-            return Err(Misuse::NumberInFolder {
-                path: path.to_owned(),
-            });
-        }
+        let is_numbered = |part: &str| hashes(part).is_some() || percent(part).is_some();
+        let mut parts = folder.iter().filter_map(|part| part.to_str());
         let Some((start, end, width)) = place else {
+            if parts.any(is_numbered) {
+                return wrong("the frame's number belongs in the file's name, not in a folder's");
+            }
             return Ok(None);
         };
         if width > WIDEST {
-            return Err(Misuse::WideNumber {
-                path: path.to_owned(),
-                widest: WIDEST,
-            });
+            return wrong(&format!("the frame's number has at most {WIDEST} digits"));
         }
-        // As long as the longest number makes it.
-        if name.len() - (end - start) + width.max(10) > LONGEST_NAME {
-            return Err(Misuse::LongName {
-                path: path.to_owned(),
-                longest: LONGEST_NAME - 10,
-            });
+        if name.len() - (end - start) + width.max(MOST_DIGITS) > LONGEST_NAME {
+            let longest = LONGEST_NAME - MOST_DIGITS;
+            return wrong(&format!(
+                "names of numbered files have at most {longest} bytes"
+            ));
         }
         Ok(Some(Self {
             folder: folder.to_owned(),
@@ -81,7 +68,7 @@ impl Pattern {
         }))
     }
 
-    /// The folder that the frames are in; empty for the current one.
+    /// The folder of the frames; empty for the current one.
     pub(super) fn folder(&self) -> &Path {
         &self.folder
     }
@@ -97,7 +84,7 @@ impl Pattern {
         self.folder.join(format!("{before}{number:0width$}{after}"))
     }
 
-    /// The frame whose file has this name.
+    /// The number of the frame whose file has this name.
     pub(super) fn number(&self, name: &[u8]) -> Option<u32> {
         let name = name.strip_prefix(self.before.as_bytes())?;
         let digits = name.strip_suffix(self.after.as_bytes())?;
@@ -115,14 +102,14 @@ impl fmt::Display for Pattern {
     }
 }
 
-/// The last row of `#`: where it begins and ends, and how many digits it stands for.
+/// The last row of `#`: its start, its end, and the number of digits.
 fn hashes(name: &str) -> Option<(usize, usize, usize)> {
     let end = name.rfind('#')? + 1;
     let start = name[..end].trim_end_matches('#').len();
     Some((start, end, end - start))
 }
 
-/// The first `%d` or `%0Nd`.
+/// The first `%d` or `%0Nd`: its start, its end, and the number of digits.
 fn percent(name: &str) -> Option<(usize, usize, usize)> {
     name.match_indices('%').find_map(|(start, _)| {
         let (width, _) = name[start + 1..].split_once('d')?;

@@ -1,26 +1,26 @@
-//! Which frames: `12`, `1-240`, every tenth of them as `1-240x10` or `1-240:10`, several of these with commas.
+//! The argument of `--frames`: `12`, `1-240`, every tenth as `1-240x10` or `1-240:10`, several with commas.
 
 use core::fmt;
 use core::str::FromStr;
 
 use crate::quotation::beginning;
 
-/// A set of frame numbers, written as `N`, `A-B`, `A-BxS` or `A-B:S` (from A to B in steps of S), with commas between
-/// several.
+/// A set of frame numbers. It is written as `N`, `A-B`, `A-BxS` or `A-B:S` (from A to B in steps of S), or several of
+/// these with commas.
 ///
 /// ```
-/// use darkness::scene::animation::FrameRange;
+/// use darkness::cli::FrameRange;
 ///
 /// let frames: FrameRange = "1-9x4, 3, 4-6".parse()?;
 /// assert_eq!(frames.iter().collect::<Vec<_>>(), [1, 3, 4, 5, 6, 9]);
-/// # Ok::<(), darkness::scene::animation::FrameRangeError>(())
+/// # Ok::<(), darkness::cli::FrameRangeError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FrameRange {
     steps: Vec<Steps>,
 }
 
-/// From the first, by so many, to no more than the last.
+/// From `first` to `last` in steps of `step`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Steps {
     first: u32,
@@ -28,41 +28,13 @@ struct Steps {
     step: u32,
 }
 
-/// The most parts of a range: each is looked at for every frame.
+/// The most parts of a range: every part is checked for each frame.
 const MOST_PARTS: usize = 1000;
 
-/// Why a text is no range of frames.
+/// Why a text is not a range of frames.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum FrameRangeError {
-    /// It is written in another way.
-    #[error(
-        "`{part}` is no range of frames: write 12, 1-240, every tenth as 1-240x10 or 1-240:10, several with commas"
-    )]
-    Form {
-        /// The part that is not understood.
-        part: String,
-    },
-    /// It has too many parts.
-    #[error("a range of frames has {MOST_PARTS} parts at most, and this one {parts}")]
-    Parts {
-        /// How many it has.
-        parts: usize,
-    },
-    /// It ends before it begins.
-    #[error(
-        "`{part}` ends before it begins: the smaller number comes first, and frames are drawn in rising order"
-    )]
-    Backwards {
-        /// The part.
-        part: String,
-    },
-    /// There is no frame 0, and no step of 0.
-    #[error("`{part}` has a zero: frames are numbered from 1, and a step is at least 1")]
-    Zero {
-        /// The part.
-        part: String,
-    },
-}
+#[error("{0}")]
+pub struct FrameRangeError(String);
 
 impl FromStr for FrameRange {
     type Err = FrameRangeError;
@@ -71,7 +43,7 @@ impl FromStr for FrameRange {
         let steps = text.split(',').map(|part| Steps::parse(part.trim()));
         let mut steps: Vec<Steps> = steps.collect::<Result<_, _>>()?;
         steps.sort_unstable_by_key(|steps| (steps.first, steps.last));
-        // Ranges without steps that touch are one.
+        // Merges ranges without steps that touch.
         steps.dedup_by(|next, before| {
             let touch =
                 next.step == 1 && before.step == 1 && next.first <= before.last.saturating_add(1);
@@ -81,7 +53,9 @@ impl FromStr for FrameRange {
             touch || next == before
         });
         if steps.len() > MOST_PARTS {
-            return Err(FrameRangeError::Parts { parts: steps.len() });
+            let parts = steps.len();
+            let reason = format!("a range of frames has at most {MOST_PARTS} parts, not {parts}");
+            return Err(FrameRangeError(reason));
         }
         Ok(Self { steps })
     }
@@ -89,9 +63,8 @@ impl FromStr for FrameRange {
 
 impl Steps {
     fn parse(part: &str) -> Result<Self, FrameRangeError> {
-        // Of a very long one its beginning.
-        let owned = || beginning(part, 40);
-        // Digits alone: a sign is none of a number here.
+        let wrong = |problem| FrameRangeError(format!("`{}` {problem}", beginning(part, 40)));
+        // Digits only: `parse` alone would accept a sign.
         let number = |text: &str| {
             let is_digits = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
             is_digits.then(|| text.parse::<u32>().ok()).flatten()
@@ -110,12 +83,18 @@ impl Steps {
                 None => None,
             }
         };
-        let (first, last, step) = read().ok_or_else(|| FrameRangeError::Form { part: owned() })?;
+        let (first, last, step) = read().ok_or_else(|| {
+            wrong("is not a range of frames; write 12, 1-240, 1-240x10 or 1-240:10, or several with commas")
+        })?;
         if first == 0 || last == 0 || step == 0 {
-            return Err(FrameRangeError::Zero { part: owned() });
+            return Err(wrong(
+                "has a zero; frames are numbered from 1, and a step is at least 1",
+            ));
         }
         if last < first {
-            return Err(FrameRangeError::Backwards { part: owned() });
+            return Err(wrong(
+                "ends before it begins; the smaller number comes first",
+            ));
         }
         let last = last - (last - first) % step;
         Ok(Self {
@@ -154,18 +133,18 @@ impl FrameRange {
         }
     }
 
-    /// The numbers, rising, each once.
+    /// The numbers in rising order.
     pub fn iter(&self) -> impl Iterator<Item = u32> + Send + '_ {
         core::iter::successors(self.above(0), |&number| self.above(number))
     }
 
-    /// The first of these above a number.
+    /// The smallest number of the range above `number`.
     pub fn above(&self, number: u32) -> Option<u32> {
         let above = self.steps.iter().filter_map(|steps| steps.above(number));
         above.min()
     }
 
-    /// Whether a number is one of these.
+    /// Whether a number is in the range.
     pub fn contains(&self, number: u32) -> bool {
         self.steps.iter().any(|steps| steps.contains(number))
     }
@@ -175,7 +154,7 @@ impl FrameRange {
         self.steps.iter().map(|steps| steps.last).max().unwrap_or(0)
     }
 
-    /// How many numbers there are.
+    /// The number of frames.
     pub fn count(&self) -> u64 {
         match self.steps.as_slice() {
             [Steps { first, last, step }] => u64::from((last - first) / step) + 1,
@@ -257,18 +236,12 @@ mod tests {
             "1-9:-1",
             "١",
         ] {
-            let error = text.parse::<FrameRange>().unwrap_err();
-            assert!(
-                matches!(error, FrameRangeError::Form { .. }),
-                "{text}: {error}"
-            );
+            let error = text.parse::<FrameRange>().unwrap_err().to_string();
+            assert!(error.contains("is not a range"), "{text}: {error}");
         }
         for text in ["0", "0-3", "1-3x0", "0-0"] {
-            let error = text.parse::<FrameRange>().unwrap_err();
-            assert!(
-                matches!(error, FrameRangeError::Zero { .. }),
-                "{text}: {error}"
-            );
+            let error = text.parse::<FrameRange>().unwrap_err().to_string();
+            assert!(error.contains("has a zero"), "{text}: {error}");
         }
         let error = "1-3,5-1".parse::<FrameRange>().unwrap_err();
         assert!(error.to_string().starts_with("`5-1` ends before it begins"));

@@ -1,31 +1,39 @@
-//! Frames as grey PNG files, which say of themselves what they were made of.
+//! Frames as grey PNG files that record their origin.
 //!
-//! Smooth frames have 8 bits a pixel; of frames with hard edges, whose pixels are 0 or 255, one bit is enough. Text chunks
-//! (PNG specification, 11.3.3) before the pixels name the program's version (`Software`) and the frame's [`Origin`]:
+//! Smooth frames have 8 bits a pixel, frames with hard edges (pixels of 0 or 255) one bit. Text chunks (PNG
+//! specification, 11.3.3) before the pixels hold the program's version (`Software`) and the [`FrameOrigin`]:
 //! `darkness:scene`, `darkness:table`, `darkness:frame`.
 
 use std::io;
 
 use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
-/// More than an encoder takes whatever its pixels, in bytes.
-const BESIDE: usize = 4 << 20;
+/// An upper bound for the encoder's memory apart from the pixels, in bytes.
+const ENCODER_MEMORY: usize = 4 << 20;
 
 /// The first bytes of every PNG file.
 const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1A\n";
 
-/// What a frame was made of. All that its bytes depend on, with the version of the program.
+/// What a frame was made of: with the program's version, all that its bytes depend on.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Origin {
+pub(super) struct FrameOrigin {
     /// The SHA-256 of the scene's TOML form, as hexadecimal digits.
-    pub scene: String,
-    /// The SHA-256 of the table's file, or what was used in place of a table.
-    pub table: String,
+    pub(super) scene: String,
+    /// The SHA-256 of the table's file, or the name of the method in place of a table.
+    pub(super) table: String,
     /// The frame's number.
-    pub frame: u32,
+    pub(super) frame: u32,
 }
 
-impl Origin {
+impl FrameOrigin {
+    /// The origin of another frame of the same animation.
+    pub(super) fn of_frame(&self, frame: u32) -> Self {
+        Self {
+            frame,
+            ..self.clone()
+        }
+    }
+
     /// The text chunks, as keyword and text.
     fn texts(&self) -> [(&'static str, String); 4] {
         [
@@ -39,8 +47,9 @@ impl Origin {
         ]
     }
 
-    /// Whether a file's bytes are a whole PNG file, every checksum of it right, that this version of the program made of the same.
-    pub fn made(&self, file: &[u8]) -> bool {
+    /// Whether `file` is a whole PNG file, with correct checksums, that this version of the program made of this
+    /// origin.
+    pub(super) fn made(&self, file: &[u8]) -> bool {
         let mut texts = self.texts().into_iter().peekable();
         let mut rest = file.strip_prefix(&SIGNATURE).unwrap_or_default();
         let mut has_pixels = false;
@@ -48,7 +57,7 @@ impl Origin {
             rest = after;
             match kind {
                 b"tEXt" => {
-                    // In the order that they are written in.
+                    // They come in the order in which they were written.
                     let Some((keyword, text)) = texts.next() else {
                         return false;
                     };
@@ -66,10 +75,10 @@ impl Origin {
     }
 }
 
-/// The first of a PNG's chunks, if it is whole: its kind, its data, and what comes after.
+/// The first chunk, if it is whole: its kind, its data, and what follows.
 fn chunk(bytes: &[u8]) -> Option<(&[u8; 4], &[u8], &[u8])> {
     let (length, rest) = bytes.split_first_chunk::<4>()?;
-    // The PNG specification's byte order.
+    // PNG is big-endian.
     let length = length
         .iter()
         .fold(0_usize, |sum, &byte| sum << 8 | usize::from(byte));
@@ -82,22 +91,22 @@ fn chunk(bytes: &[u8]) -> Option<(&[u8; 4], &[u8], &[u8])> {
     (crc32fast::hash(checked) == found).then_some((kind, data, after))
 }
 
-/// The bytes of a grey PNG file with these pixels, row by row from the top: with 8 bits a pixel, or with one, which is set where
-/// the pixel is 128 or more.
+/// Encodes grey pixels, row by row from the top, with 8 bits a pixel; or with one bit, which is set where the pixel is
+/// at least 128.
 ///
 /// # Errors
-/// Where the number of pixels is not `width` × `height`, or they take more memory to encode than there is.
-pub fn encode(
+/// The number of pixels is not `width` × `height`, or there is not enough memory to encode them.
+pub(super) fn encode(
     pixels: &[u8],
     (width, height): (u32, u32),
     one_bit: bool,
-    origin: &Origin,
+    origin: &FrameOrigin,
 ) -> io::Result<Vec<u8>> {
     check_memory(pixels.len())?;
     let mut bytes = Vec::new();
     let mut encoder = Encoder::new(&mut bytes, width, height);
     encoder.set_color(ColorType::Grayscale);
-    // Measured as the fastest, and within a sixth of the smallest.
+    // Measured: the fastest, and within a sixth of the smallest file.
     encoder.set_compression(Compression::Fast);
     for (keyword, text) in origin.texts() {
         encoder.add_text_chunk(keyword.into(), text)?;
@@ -118,18 +127,20 @@ pub fn encode(
     Ok(bytes)
 }
 
-/// Asks for the memory that so many pixels take to encode, and gives it back: where the encoder is refused any, the process ends.
+/// Checks that the system grants the memory to encode `pixels` pixels: an allocation that fails in the encoder ends the
+/// process.
 fn check_memory(pixels: usize) -> io::Result<()> {
-    // Frames with hard edges take an eighth packed and as much encoded, smooth ones a tenth encoded, twice.
+    // Hard frames take an eighth packed and as much encoded; smooth ones twice a tenth.
     let mut room = Vec::<u8>::new();
-    room.try_reserve_exact(pixels / 2 + BESIDE).map_err(|_| {
-        let problem =
-            format!("there is not the memory to encode {pixels} pixels: ask for a smaller picture");
-        io::Error::new(io::ErrorKind::OutOfMemory, problem)
-    })
+    room.try_reserve_exact(pixels / 2 + ENCODER_MEMORY)
+        .map_err(|_| {
+            let problem =
+                format!("not enough memory to encode {pixels} pixels; choose a smaller picture");
+            io::Error::new(io::ErrorKind::OutOfMemory, problem)
+        })
 }
 
-/// Eight pixels a byte, the first the highest bit; each row begins with a byte of its own.
+/// Packs eight pixels into a byte, the first into the highest bit; each row starts a new byte.
 fn packed(pixels: &[u8], width: usize) -> Vec<u8> {
     let mut bits = Vec::with_capacity(pixels.len().div_ceil(8));
     for row in pixels.chunks(width.max(1)) {
@@ -156,8 +167,8 @@ fn byte(pixels: [u8; 8]) -> u8 {
 mod tests {
     use super::*;
 
-    fn origin(frame: u32) -> Origin {
-        Origin {
+    fn origin(frame: u32) -> FrameOrigin {
+        FrameOrigin {
             scene: "5c".repeat(32),
             table: "none".into(),
             frame,
@@ -206,14 +217,14 @@ mod tests {
         assert!(origin(12).made(&file));
         assert!(!origin(13).made(&file));
         assert!(
-            !Origin {
+            !FrameOrigin {
                 scene: "5d".repeat(32),
                 ..origin(12)
             }
             .made(&file)
         );
         assert!(
-            !Origin {
+            !FrameOrigin {
                 table: "exact".into(),
                 ..origin(12)
             }

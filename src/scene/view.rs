@@ -2,31 +2,30 @@
 //!
 //! # Derivation
 //!
-//! The camera stands at P, `r = |P|`, `p̂ = P/r`, looks at F and is a static observer. With `V = F − P`, `L = |V|`:
+//! The camera is a static observer at P, `r = |P|`, `p̂ = P/r`, and looks at F. With `V = F − P`, `L = |V|`:
 //! `f = V/L`, `right = f × up` normalised, `true_up = right × f`. The picture's point (X, Y) is seen in the direction
 //! `d = f + right X + true_up Y`. Of a direction only its inward part `z = −d·p̂` and its part across p̂, `t = d + z
 //! p̂`, are needed: the ray moves in the plane of p̂ and t, and starts with `du/dφ = u0 √(1 − u0) z/s`, `s = |t|`.
 //!
-//! t is given in a basis (â, b̂) of the plane across p̂ that the disk's unit normal n chooses: â along n's part
-//! across p̂, `b̂ = p̂ × â`. So `n·b̂ = 0` and `n·t = (n·â) t_a`; z, `t_a` and `t_b` are affine in (X, Y).
+//! t is given in a basis (â, b̂) of the plane across p̂: â is along the part across p̂ of the disk's unit normal n,
+//! `b̂ = p̂ × â`. So `n·b̂ = 0` and `n·t = (n·â) t_a`; z, `t_a` and `t_b` are affine in (X, Y).
 //!
 //! # Precision
 //!
-//! A far camera looks at the hole through a field of view of 1e-12 rad, and t is as small. Subtracting `z p̂` from d
-//! would leave nothing of it. Instead the coefficients are formed so that nothing large is subtracted:
+//! A far camera may have a field of view of 1e-12 rad, and t is as small. Subtracting `z p̂` from d would lose all its
+//! digits. The coefficients are formed without subtracting large numbers:
 //!
-//! * f's part across p̂ is that of F/L and also that of V/L, since F − V = P is along p̂. The shorter of F and V is
-//!   taken: the error is ε min(|F|, L)/L.
+//! * f's part across p̂ is that of F/L and also that of V/L, since F − V = P is along p̂. The shorter of F and V gives
+//!   an error of ε min(|F|, L)/L.
 //! * right and `true_up` are ⟂ V, so `right·P = right·F` and `right·p̂ = right·F/r`, small where F is near the hole.
 
 use glam::DVec3;
 
-use super::Scene;
+use super::checked::Scene;
 use super::vector::{cosine, direction, norm, scaled, unit_cross};
 
-/// Where `|n × p̂|` is no more than this, n and p̂ are parallel: what is left is the rounding of the cross product
-/// and of the norms, and would give â no direction. Taking `n·â` for 0 there changes an angle φ₁ by no more than
-/// this.
+/// n and p̂ are parallel where `|n × p̂|` is at most this: the rest is the rounding of the cross product and of the
+/// norms, and gives â no direction. Taking `n·â` as 0 there changes an angle φ₁ by at most this.
 const PARALLEL: f64 = 4.0 * f64::EPSILON;
 
 /// A quantity that is affine in a picture's coordinates: `at_centre + per_x X + per_y Y`.
@@ -47,26 +46,25 @@ impl Affine {
     }
 }
 
-/// The direction a pixel looks in, in the frame of the hole; its length means nothing.
+/// The direction of a pixel in the frame of the hole, of arbitrary length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PixelRay {
     /// The inward part, `−d·p̂`: positive towards the hole's side.
     pub z: f64,
-    /// The transverse part along â, the direction across p̂ in which the disk's normal leans.
+    /// The transverse part along â, the direction of the disk's normal across p̂.
     pub ta: f64,
     /// The transverse part along `b̂ = p̂ × â`, in the disk's plane.
     pub tb: f64,
 }
 
 impl PixelRay {
-    /// `s = √(ta² + tb²)`, the transverse part's length; 0 for a ray straight at or away from the hole, which has no
-    /// orbital plane.
+    /// `s = √(ta² + tb²)`, the transverse part's length. It is 0 for a radial ray, which has no orbital plane.
     pub fn transverse(self) -> f64 {
         (self.ta * self.ta + self.tb * self.tb).sqrt()
     }
 }
 
-/// All that a frame needs of its scene's camera: the camera's radius, and each pixel's ray.
+/// What a frame computes with: the camera's radius, and each pixel's ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
     radius: f64,
@@ -90,12 +88,12 @@ impl View {
         let radius = scene.radius();
         let p = direction(camera.position);
 
-        // One power of two for V and F, so that neither squares out of range. A scene's V is not much shorter than F.
+        // Both are scaled by one power of two, so that their squares stay in range: V is not much shorter than F.
         let (view, scale) = scaled(camera.focus - camera.position);
         let focus = camera.focus / scale;
         let distance = view.length();
         let f = view / distance;
-        // Twice, so that both are ⟂ f to the last digit also where up is nearly parallel to f.
+        // Two products, so that both are ⟂ f to the last digit even where up is nearly parallel to f.
         let true_up = direction(direction(view.cross(direction(camera.up))).cross(f));
         let right = direction(f.cross(true_up));
 
@@ -118,11 +116,11 @@ impl View {
         let p_cross_n = unit_cross(camera.position, disk.normal);
         let sine = p_cross_n.length();
         let (n_a, a) = if sine > PARALLEL {
-            // The second cross product makes â ⟂ p̂ to the last digit, which p̂ × n, a difference, is not to it.
+            // The second cross product makes â ⟂ p̂ to the last digit; p̂ × n alone, a difference, is not.
             (sine, direction(p_cross_n.cross(p)))
         } else if true_up_p.abs() <= right_p.abs() {
-            // Any direction across p̂ will do; of these two the one farther from p̂ has a part across of at least
-            // 1/√2.
+            // Any direction across p̂ will do. The one of these two that is farther from p̂ has a part across p̂ of at
+            // least 1/√2.
             (0.0, direction(true_up - p * true_up_p))
         } else {
             (0.0, direction(right - p * right_p))
@@ -170,7 +168,7 @@ impl View {
         self.slope_scale
     }
 
-    /// `n·p̂`, the sine of the camera's height over the disk's plane; exactly 0 where `normal · position` is.
+    /// `n·p̂`, the sine of the camera's elevation above the disk's plane; exactly 0 where `normal · position` is.
     pub fn n_p(&self) -> f64 {
         self.n_p
     }
@@ -180,8 +178,8 @@ impl View {
         self.n_a
     }
 
-    /// D over `t_a`, where `tan φ₁ = N/D`, `N = |n·p̂| s`: n·â, with the sign of the normal that points away from the
-    /// camera. (n and −n are the same plane; of the two this one has N ≥ 0.)
+    /// `D/t_a`, where `tan φ₁ = N/D` and `N = |n·p̂| s`: it is n·â for the normal, n or −n, that points away from the
+    /// camera, so that N ≥ 0.
     pub fn plane_slope(&self) -> f64 {
         if self.n_p > 0.0 { -self.n_a } else { self.n_a }
     }
@@ -242,8 +240,7 @@ impl View {
         self.ray_at(self.x_at(f64::from(i) + 0.5), self.y_at(f64::from(j) + 0.5))
     }
 
-    /// `du/dφ = u0 √(1 − u0) z/s` where the ray starts, positive inward; ±∞ for a ray straight at or away from the
-    /// hole.
+    /// `du/dφ = u0 √(1 − u0) z/s` at the start of the ray, positive inward; ±∞ for a radial ray.
     pub fn dudphi(&self, ray: PixelRay) -> f64 {
         self.slope_scale * ray.z / ray.transverse()
     }
@@ -251,10 +248,9 @@ impl View {
     /// The orbit angle φ₁ in [0, π) at which a ray with transverse part `ta` along â and length `s` first meets the
     /// disk's plane, `tan φ₁ = −(n·p̂)/(n·t̂)`, `n·t̂ = n_a ta/s`. It meets the plane at `φ₁ + kπ`, `k = 0, 1, 2 …`.
     ///
-    /// The camera itself is no crossing: only positive angles count. So where this is 0, the crossings are at `kπ`, k
-    /// ≥ 1. That is where `n·p̂ = 0`, also for the ray that stays in the disk's plane (`ta = 0`: the limit, like its
-    /// neighbours), and where φ₁ is π to the last digit. For s = 0 there is no orbital plane and the value means
-    /// nothing.
+    /// Only positive angles count, as the camera itself is not a crossing. So where this is 0, the crossings are at
+    /// `kπ`, k ≥ 1. It is 0 where `n·p̂ = 0`, also for a ray that stays in the disk's plane (`ta = 0`, the limit of its
+    /// neighbours), and where φ₁ rounds to π. For s = 0 the value is meaningless.
     pub fn plane_crossing(&self, ta: f64, s: f64) -> f64 {
         if self.n_p == 0.0 {
             return 0.0;

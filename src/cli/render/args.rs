@@ -1,0 +1,87 @@
+//! The arguments of `darkness render`.
+
+use std::path::PathBuf;
+
+use bytesize::ByteSize;
+use clap::Args;
+
+use super::super::frame_range::FrameRange;
+use super::super::method::MethodArgs;
+use super::super::progress::ProgressKind;
+use super::super::threads::ThreadArgs;
+use super::format::Format;
+use super::memory;
+use crate::scene::{DEFAULT_SCENE, ImageSize};
+
+/// Render a scene as a PNG picture, or its animation as numbered PNG pictures or a film
+///
+/// The program takes the smallest table, and the fewest orders and nodes of the image's curves, that keep every edge
+/// within the scene's tolerance; --explain prints them.
+///
+/// Finished frames of the same scene, table and version are kept: the same command continues an interrupted run. The
+/// first Ctrl-C or SIGTERM finishes the frames that are begun, the second ends the run at once.
+#[derive(Debug, Args)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a switch of the command line"
+)]
+pub(in crate::cli) struct RenderArgs {
+    /// A scene's TOML file, or the name of a built-in scene (`darkness scene` lists them)
+    #[arg(value_name = "SCENE", default_value = DEFAULT_SCENE)]
+    pub(super) scene: PathBuf,
+    /// The output: a .png file, or - for the standard output. For an animation: a name with #### or %04d in place of
+    /// the number, or a .y4m or .raw file [default: the scene's name with .png, or with _####.png for an animation, in
+    /// the current folder]
+    #[arg(short, long, value_name = "OUT")]
+    pub(super) output: Option<PathBuf>,
+    /// The format, where the extension does not name it
+    #[arg(long, value_name = "FORMAT", value_enum)]
+    pub(super) format: Option<Format>,
+    /// The frames of an animation: 12, 1-240, every tenth as 1-240x10 or 1-240:10, several with commas [default: all]
+    #[arg(long, value_name = "RANGE")]
+    pub(super) frames: Option<FrameRange>,
+    /// Draw finished frames again
+    #[arg(long)]
+    pub(super) overwrite: bool,
+    /// List the frames and their files, and draw nothing
+    #[arg(long, conflicts_with = "explain")]
+    pub(super) dry_run: bool,
+    /// How progress is shown on the standard error
+    #[arg(long, value_name = "HOW", value_enum, default_value_t = ProgressKind::Auto)]
+    pub(super) progress: ProgressKind,
+    /// The picture's size in pixels, such as 1920x1080 [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub(super) size: Option<ImageSize>,
+    /// The largest error of an edge, in pixels, above 0 and at most 1 [default: the scene's]
+    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true)]
+    pub(super) tolerance: Option<f64>,
+    /// Smooth edges: each pixel is the share of its square that the disk covers; with false, what its centre sees. Only
+    /// --method table draws smooth edges [default: the scene's]
+    #[arg(long, value_name = "true|false", action = clap::ArgAction::Set)]
+    pub(super) antialias: Option<bool>,
+    /// Print the time of each part of the work: curves, render, encode, write; for one picture also culling and edges
+    #[arg(long, conflicts_with_all = ["explain", "dry_run"])]
+    pub(super) timings: bool,
+    /// Print what the picture needs and what it does not, and draw nothing
+    #[arg(long, conflicts_with = "output")]
+    pub(super) explain: bool,
+    /// Fail where the table is missing, instead of making it: for one of many workers
+    #[arg(long)]
+    pub(super) require_table: bool,
+    /// The most memory for frames, such as 16GiB: two bytes for each pixel of the frames that are drawn at a time
+    #[arg(long, value_name = "SIZE", default_value = memory::DEFAULT, value_parser = memory::parse)]
+    pub(super) max_memory: ByteSize,
+    #[command(flatten)]
+    pub(super) method: MethodArgs,
+    #[command(flatten)]
+    pub(super) threads: ThreadArgs,
+}
+
+fn size(text: &str) -> Result<ImageSize, String> {
+    let sides = text.split_once(['x', 'X', '×']);
+    let size = sides.and_then(|(width, height)| {
+        let (width, height) = (width.parse().ok()?, height.parse().ok()?);
+        Some(ImageSize { width, height })
+    });
+    size.ok_or_else(|| "a size is width x height, in pixels: 1920x1080".into())
+}

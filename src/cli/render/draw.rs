@@ -1,0 +1,88 @@
+//! How frames are drawn. This is the only file of the program that calls the renderer.
+
+use super::super::method::Method;
+use crate::isoradial::Isoradials;
+use crate::orbit::exact::Exact;
+use crate::render::batch::{self, Curved, FrameError, Frames, RayByRay, Sharing};
+pub(super) use crate::render::batch::{Drawn, Effort};
+pub(super) use crate::render::frame::Workspace;
+use crate::render::needs::Needs;
+use crate::scene::{Animation, Scene, View};
+
+/// Draws the frames of an animation by some method.
+pub(super) struct FrameSource<'a>(&'a dyn Frames);
+
+impl FrameSource<'_> {
+    /// Calls `body` with the frames of `animation`. Methods that follow each pixel's ray call `row_done` after each
+    /// row.
+    pub(super) fn with<T>(
+        animation: &Animation,
+        method: &Method,
+        row_done: &(dyn Fn() + Sync),
+        body: impl FnOnce(&FrameSource<'_>) -> T,
+    ) -> T {
+        match method {
+            Method::Table(table) => body(&FrameSource(&Curved::new(animation, &table.lookup()))),
+            Method::NoTable => body(&FrameSource(&Curved::new(animation, &Exact))),
+            Method::Exact => body(&FrameSource(&RayByRay::new(animation, &Exact, row_done))),
+            Method::Integrate(adaptive) => {
+                body(&FrameSource(&RayByRay::new(animation, adaptive, row_done)))
+            }
+        }
+    }
+
+    /// Draws one frame into `pixels`, row by row from the top, on all threads.
+    ///
+    /// # Errors
+    /// [`FrameError`]
+    pub(super) fn draw_one(
+        &self,
+        number: u32,
+        workspace: &mut Workspace,
+        pixels: &mut Vec<u8>,
+    ) -> Result<Effort, FrameError> {
+        self.0.draw(number, true, workspace, pixels)
+    }
+
+    /// Draws the frames `numbers`, about `count`, at most `at_a_time` side by side. Frames that are not `wanted` are
+    /// skipped; `done` takes each drawn frame, from several threads and in any order.
+    ///
+    /// # Errors
+    /// The first error of `done`; no frame is begun after it.
+    pub(super) fn draw_all<E: Send>(
+        &self,
+        numbers: impl Iterator<Item = u32> + Send,
+        count: u64,
+        at_a_time: u64,
+        wanted: impl Fn(u32) -> bool + Sync,
+        done: impl Fn(Drawn<'_>) -> Result<(), E> + Sync,
+    ) -> Result<(), E> {
+        let sharing = Sharing::fastest(count, at_a_time);
+        batch::draw(self, numbers, sharing, wanted, done)
+    }
+}
+
+impl Frames for FrameSource<'_> {
+    fn draw(
+        &self,
+        number: u32,
+        on_all_threads: bool,
+        workspace: &mut Workspace,
+        pixels: &mut Vec<u8>,
+    ) -> Result<Effort, FrameError> {
+        self.0.draw(number, on_all_threads, workspace, pixels)
+    }
+}
+
+/// What a scene needs of a table and of its curves.
+pub(super) fn needs(scene: &Scene) -> Needs {
+    Needs::new(scene, &View::new(scene))
+}
+
+/// The curves of a scene that needs `needs`, by a method that draws curves.
+pub(super) fn curves(needs: &Needs, method: &Method) -> Isoradials {
+    match method {
+        Method::Table(table) => Isoradials::new(&needs.sight, &table.lookup()),
+        _ => Isoradials::new(&needs.sight, &Exact),
+    }
+}

@@ -1,0 +1,74 @@
+//! The scene and the frames that the arguments ask for, checked.
+
+use super::super::frame_range::FrameRange;
+use super::super::method::{Checked, Method};
+use super::super::misuse::misuse;
+use super::super::progress::Report;
+use super::args::RenderArgs;
+use super::memory;
+use crate::scene::{Animation, ImageSize, SceneError};
+
+/// The scene, with what the options change of it.
+///
+/// # Errors
+/// The options contradict each other or the scene, or the scene is refused.
+pub(super) fn animation(args: &RenderArgs) -> anyhow::Result<Animation> {
+    for (given, flag) in [
+        (args.tolerance.is_some(), "--tolerance"),
+        (args.explain, "--explain"),
+        (args.antialias == Some(true), "--antialias"),
+        (args.timings, "--timings"),
+        (args.require_table, "--require-table"),
+    ] {
+        if given && !args.method.is_table() {
+            return Err(misuse(format!("{flag} needs --method table")));
+        }
+    }
+    let mut animation = Animation::load(&args.scene)?;
+    if let Some(size) = args.size {
+        memory::check(args.max_memory, size)?;
+        let ImageSize { width, height } = size;
+        let sized = animation.with_size(width, height);
+        animation = sized.map_err(|error| misuse(format!("--size {width}x{height}: {error}")))?;
+    }
+    if let Some(antialias) = args.antialias {
+        animation = animation.with_antialias(antialias)?;
+    }
+    if let Some(pixels) = args.tolerance {
+        let right = animation.with_tolerance(pixels);
+        animation = right.map_err(|error| misuse(format!("--tolerance {pixels}: {error}")))?;
+    }
+    memory::check(args.max_memory, animation.image())?;
+    Ok(animation)
+}
+
+/// The frames, all of which the animation has.
+///
+/// # Errors
+/// It has not.
+pub(super) fn frames(args: &RenderArgs, animation: &Animation) -> anyhow::Result<FrameRange> {
+    let all = FrameRange::up_to(animation.frames());
+    let range = args.frames.clone().unwrap_or(all);
+    let (number, frames) = (range.last(), animation.frames());
+    if number > frames {
+        let error = SceneError::NoFrame { number, frames };
+        return Err(misuse(format!("--frames {range}: {error}")));
+    }
+    Ok(range)
+}
+
+/// The method, with its table made where it is missing and may be made.
+///
+/// # Errors
+/// The table cannot be made, or may not.
+pub(super) fn method(
+    args: &RenderArgs,
+    checked: Checked,
+    report: Report,
+) -> anyhow::Result<Method> {
+    if args.require_table {
+        checked.without_making()
+    } else {
+        checked.ready(report)
+    }
+}

@@ -1,0 +1,117 @@
+//! Counts, times and failures of a run.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use super::draw::Effort;
+
+/// Counts, times and failures of frames, which several threads report.
+#[derive(Debug, Default)]
+pub(super) struct RunStats(Mutex<Counts>);
+
+/// The state of [`RunStats`].
+#[derive(Debug, Default)]
+pub(super) struct Counts {
+    /// Frames that were drawn, encoded and written.
+    pub(super) drawn: u64,
+    /// Frames that were there already.
+    pub(super) finished_before: u64,
+    /// Frames whose curves were not accurate enough.
+    pub(super) ray_by_ray: u64,
+    /// The frame with the largest error of an edge, the first of equals.
+    pub(super) worst: Option<(u32, Effort)>,
+    /// Times summed over all threads: for curves, pixels, encoding and writing.
+    pub(super) times: [Duration; 4],
+    /// The numbers of the frames that failed, by reason.
+    failures: BTreeMap<String, Vec<u32>>,
+}
+
+impl RunStats {
+    /// Counts a frame that was drawn, encoded and written.
+    pub(super) fn drawn(&self, number: u32, effort: Effort, encoding: Duration, writing: Duration) {
+        let mut counts = self.counts();
+        counts.drawn += 1;
+        counts.ray_by_ray += u64::from(effort.ray_by_ray);
+        let times = [effort.curves, effort.pixels, encoding, writing];
+        for (sum, time) in counts.times.iter_mut().zip(times) {
+            *sum += time;
+        }
+        let total = effort.error.total();
+        let is_worse = counts.worst.is_none_or(|(first, worst)| {
+            total > worst.error.total() || (total == worst.error.total() && number < first)
+        });
+        if is_worse {
+            counts.worst = Some((number, effort));
+        }
+    }
+
+    /// Counts a frame that was there already.
+    pub(super) fn finished_before(&self) {
+        self.counts().finished_before += 1;
+    }
+
+    /// Counts a frame that could not be drawn or written.
+    pub(super) fn failed(&self, number: u32, reason: &impl ToString) {
+        let mut counts = self.counts();
+        let numbers = counts.failures.entry(reason.to_string()).or_default();
+        numbers.push(number);
+    }
+
+    /// The counts so far.
+    pub(super) fn counts(&self) -> MutexGuard<'_, Counts> {
+        // A panic cannot leave the counts inconsistent.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Counts {
+    /// The frames that failed, by reason, in words; [`None`] if none did.
+    pub(super) fn failures(&self) -> Option<String> {
+        if self.failures.is_empty() {
+            return None;
+        }
+        let count: usize = self.failures.values().map(Vec::len).sum();
+        let noun = if count == 1 { "frame" } else { "frames" };
+        let mut text = format!("{count} {noun} failed; the same command tries them again:");
+        for (reason, numbers) in &self.failures {
+            let mut numbers = numbers.clone();
+            numbers.sort_unstable();
+            let _ = write!(text, "\n  {}: {reason}", ranges(&numbers));
+        }
+        Some(text)
+    }
+}
+
+/// Formats rising numbers as an argument of `--frames`: `3-5,9`.
+fn ranges(numbers: &[u32]) -> String {
+    let runs = numbers.chunk_by(|a, b| a + 1 == *b);
+    let text: Vec<String> = runs
+        .map(|run| match run {
+            [only] => only.to_string(),
+            [first, .., last] => format!("{first}-{last}"),
+            [] => String::new(),
+        })
+        .collect();
+    text.join(",")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn failures_are_listed_by_reason_in_ranges_that_can_be_asked_for_again() {
+        let stats = RunStats::default();
+        assert_eq!(stats.counts().failures(), None);
+        for number in [9, 3, 5, 4] {
+            stats.failed(number, &"the disk is full");
+        }
+        stats.failed(7, &"no right");
+        assert_eq!(
+            stats.counts().failures().unwrap(),
+            "5 frames failed; the same command tries them again:\n  7: no right\n  3-5,9: the disk is full"
+        );
+    }
+}

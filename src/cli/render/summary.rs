@@ -1,0 +1,129 @@
+//! The report after a run: what was drawn, how accurate it is, and what it took.
+
+use std::io::{self, Write};
+use std::time::Duration;
+
+use super::super::destination::Destination;
+use super::super::method::Method;
+use super::super::progress::{Report, duration, warn};
+use super::draw::Effort;
+use super::plan::Plan;
+use super::run::Outcome;
+use super::run_stats::Counts;
+
+/// Reports a run.
+///
+/// # Errors
+/// Frames that failed; an interrupted run.
+pub(super) fn report(
+    plan: &Plan<'_>,
+    method: &Method,
+    outcome: &Outcome,
+    report: Report,
+) -> anyhow::Result<()> {
+    let counts = &*outcome.stats.counts();
+    let (drawn, kept) = (counts.drawn, counts.finished_before);
+    if drawn > 0 {
+        report_errors(plan, counts, report);
+        if plan.args.timings {
+            print_timings(counts, outcome.elapsed);
+        }
+    }
+    let finished = drawn + kept;
+    let interrupted = outcome.interrupt.check(|| {
+        let rest = match plan.destination {
+            _ if finished == plan.count => "",
+            Destination::Sequence(_) => "; the same command continues from there",
+            _ => "; an unfinished file is not kept",
+        };
+        format!("{finished} of {} frames are finished{rest}", plan.count)
+    });
+    match (counts.failures(), &interrupted) {
+        (Some(failures), Ok(())) => anyhow::bail!("{failures}"),
+        (Some(failures), Err(_)) => warn(failures),
+        (None, _) => {}
+    }
+    interrupted?;
+
+    let (destination, size) = (&plan.destination, plan.first.image());
+    let what = format!("{} × {}, {method}", size.width, size.height);
+    let time = duration(outcome.elapsed);
+    if drawn == 0 {
+        let all = if kept == 1 {
+            "the frame was"
+        } else {
+            "all frames were"
+        };
+        report.note(format_args!("{destination}: {all} finished before"));
+    } else if plan.count == 1 {
+        report.note(format_args!("{destination}: {what}, drawn in {time}"));
+    } else {
+        let rate = drawn as f64 / outcome.elapsed.as_secs_f64();
+        let before = match kept {
+            0 => String::new(),
+            kept => format!("; {kept} were finished before"),
+        };
+        report.note(format_args!(
+            "{destination}: {drawn} frames of {what}, in {time}, {rate:.1} frames/s{before}"
+        ));
+    }
+    Ok(())
+}
+
+/// Reports the largest error of an edge where it exceeds the tolerance, and what would help.
+fn report_errors(plan: &Plan<'_>, counts: &Counts, report: Report) {
+    let Some((
+        number,
+        Effort {
+            error, ray_by_ray, ..
+        },
+    )) = counts.worst
+    else {
+        return;
+    };
+    let frame = if plan.animation.is_still() {
+        "this picture".into()
+    } else {
+        format!("frame {number}")
+    };
+    if counts.ray_by_ray > 0 {
+        let of = match counts.ray_by_ray {
+            1 => String::new(),
+            count => format!(" of {count} such frames"),
+        };
+        report.note(format_args!(
+            "the isoradial curves of {frame} are only right to {:.1e} pixels, so every pixel's ray{of} is followed by \
+             itself: this takes a hundred times as long and leaves hard edges",
+            error.total()
+        ));
+    }
+    let off = if ray_by_ray {
+        error.angles + error.rounding
+    } else {
+        error.total()
+    };
+    let allowed = plan.first.tolerance();
+    if off > allowed {
+        let advice = match plan.needs.table() {
+            _ if error.angles <= error.rounding => "double precision cannot do better".into(),
+            Some(table) => format!("the {} table is good enough", table.name),
+            None => "no table is good enough, --method exact is".into(),
+        };
+        report.note(format_args!(
+            "an edge of {frame} may be off by {off:.1e} pixels, more than the {allowed:?} asked for: {advice}"
+        ));
+    }
+}
+
+/// Prints the times of the parts of the work, summed over all threads.
+fn print_timings(counts: &Counts, elapsed: Duration) {
+    let mut lines: Vec<_> = ["curves", "render", "encode", "write"]
+        .into_iter()
+        .zip(counts.times)
+        .collect();
+    lines.push(("all, from the first frame to the last", elapsed));
+    let mut stderr = io::stderr();
+    for (name, time) in lines {
+        let _ = writeln!(stderr, "{:>10}  {name}", duration(time));
+    }
+}

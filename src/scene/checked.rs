@@ -1,0 +1,153 @@
+//! A scene whose values are checked.
+
+use super::error::SceneError;
+use super::validate;
+use super::values::{Camera, DEFAULT_TOLERANCE, Disk, ImageSettings, ImageSize};
+use super::vector::norm;
+
+/// A checked scene: nothing that takes one needs to check it again.
+///
+/// ```
+/// use darkness::scene::{Camera, Disk, ImageSize, Scene};
+///
+/// let camera = Camera::at([20.0, 0.0, 5.0], 40.0);
+/// let size = ImageSize { width: 640, height: 360 };
+/// let scene = Scene::new(camera, Disk::new(3.0, 12.0), size)?;
+///
+/// // The same from TOML.
+/// let text = "[camera]\nposition = [20, 0, 5]\nfov = 40\n\
+///             [disk]\ninner = 3\nouter = 12\n\
+///             [image]\nwidth = 640\nheight = 360\n";
+/// assert_eq!(Scene::from_toml(text)?, scene);
+///
+/// let error = Scene::new(camera, Disk::new(2.0, 12.0), size).unwrap_err();
+/// assert!(error.to_string().starts_with("disk.inner = 2.0: no stable circular orbit exists"));
+/// # Ok::<(), darkness::scene::SceneError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scene {
+    camera: Camera,
+    radius: f64,
+    disk: Disk,
+    settings: ImageSettings,
+}
+
+impl Scene {
+    /// Checks a scene that is built from values. Its edges are smooth ([`Self::with_antialias`]) and right to
+    /// [`DEFAULT_TOLERANCE`] ([`Self::with_tolerance`]).
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for the first value that is not allowed.
+    pub fn new(camera: Camera, disk: Disk, image: ImageSize) -> Result<Self, SceneError> {
+        let (width, height) = (i64::from(image.width), i64::from(image.height));
+        let settings = validate::image(width, height, true, DEFAULT_TOLERANCE)?;
+        Self::at_radius(camera, norm(camera.position), disk, settings)
+    }
+
+    /// The scene of a camera whose position has the length `radius`, up to the rounding of the position's components.
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for the first value that is not allowed.
+    pub(super) fn at_radius(
+        camera: Camera,
+        radius: f64,
+        disk: Disk,
+        settings: ImageSettings,
+    ) -> Result<Self, SceneError> {
+        validate::scene(&camera, radius, &disk)?;
+        Ok(Self {
+            camera,
+            radius,
+            disk,
+            settings,
+        })
+    }
+
+    /// The same scene as a picture of another size; the vertical field of view stays.
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for a size that is not allowed.
+    pub fn with_size(mut self, width: u32, height: u32) -> Result<Self, SceneError> {
+        self.settings.size = validate::image_size(i64::from(width), i64::from(height))?;
+        Ok(self)
+    }
+
+    /// The same scene with its edges right to `pixels`.
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for a tolerance that is not allowed.
+    pub fn with_tolerance(mut self, pixels: f64) -> Result<Self, SceneError> {
+        validate::tolerance(pixels)?;
+        self.settings.tolerance = pixels;
+        Ok(self)
+    }
+
+    /// The same scene with smooth edges, or with hard ones.
+    #[must_use]
+    pub fn with_antialias(mut self, antialias: bool) -> Self {
+        self.settings.antialias = antialias;
+        self
+    }
+
+    /// The camera.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// The camera's radius, `|position|`, in Schwarzschild radii. Frames of an animation at one radius have the same
+    /// value, to the last bit, although the components of their positions are rounded.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The disk.
+    pub fn disk(&self) -> &Disk {
+        &self.disk
+    }
+
+    /// The picture's size.
+    pub fn image(&self) -> ImageSize {
+        self.settings.size
+    }
+
+    /// Whether edges are smooth: a pixel is then the share of its square that the disk covers, else what its centre
+    /// sees.
+    pub fn antialias(&self) -> bool {
+        self.settings.antialias
+    }
+
+    /// An edge's largest error, in pixels.
+    pub fn tolerance(&self) -> f64 {
+        self.settings.tolerance
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn with_size_checks_the_size_and_keeps_the_rest() {
+        let scene = Scene::builtin("classic").unwrap();
+        let small = scene.with_size(64, 36).unwrap();
+        assert_eq!(
+            small.image(),
+            ImageSize {
+                width: 64,
+                height: 36
+            }
+        );
+        assert_eq!(
+            (small.camera(), small.disk()),
+            (scene.camera(), scene.disk())
+        );
+        assert!(matches!(
+            scene.with_size(0, 36),
+            Err(SceneError::Value { .. })
+        ));
+        assert!(matches!(
+            scene.with_size(64, 1_000_001),
+            Err(SceneError::Value { .. })
+        ));
+    }
+}

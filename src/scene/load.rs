@@ -1,0 +1,157 @@
+//! Scenes and animations from text, files and the built-in ones.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use super::animation::Animation;
+use super::builtin::Builtin;
+use super::checked::Scene;
+use super::error::SceneError;
+use super::file::SceneFile;
+
+/// The longest file that is read as a scene, in bytes.
+const LONGEST_FILE: u64 = 1 << 20;
+
+impl Scene {
+    /// Reads a scene from its TOML form, which the [module's page](super) describes.
+    ///
+    /// # Errors
+    /// [`SceneError::Toml`] with line and column where the text is not TOML, or a key is missing, unknown or of the
+    /// wrong type; [`SceneError::Value`] for a value that is not allowed.
+    pub fn from_toml(text: &str) -> Result<Self, SceneError> {
+        Animation::from_toml(text)?.frame(1)
+    }
+
+    /// The built-in scene of this name; [`builtins`](super::builtins) lists them.
+    ///
+    /// # Errors
+    /// [`SceneError::Unknown`], which names them.
+    pub fn builtin(name: &str) -> Result<Self, SceneError> {
+        let builtin =
+            Builtin::named(name).ok_or_else(|| SceneError::Unknown { path: name.into() })?;
+        Self::from_toml(builtin.toml())
+    }
+
+    /// The built-in scene of this name, or else the scene in the TOML file at this path.
+    ///
+    /// A file that has the name of a built-in scene is reached as `./classic`.
+    ///
+    /// # Errors
+    /// [`SceneError::Unknown`] where there is neither, [`SceneError::Read`] for a file that cannot be read,
+    /// [`SceneError::InFile`] for a file that holds no valid scene.
+    pub fn load(path_or_name: impl AsRef<Path>) -> Result<Self, SceneError> {
+        load_text(path_or_name.as_ref(), Self::from_toml)
+    }
+
+    /// The scene's TOML form with every key written out. [`Scene::from_toml`] reads the same scene back.
+    pub fn to_toml(&self) -> String {
+        SceneFile::from(self).to_string()
+    }
+}
+
+impl Animation {
+    /// Reads an animation from its TOML form: a scene's, which the [module's page](super) describes, with the table
+    /// [`[animation]`](super::animation).
+    ///
+    /// # Errors
+    /// Those of [`Scene::from_toml`], for what is wrong with every frame. [`Self::frame`] returns what is wrong with
+    /// one frame.
+    pub fn from_toml(text: &str) -> Result<Self, SceneError> {
+        Self::new(SceneFile::parse(text)?)
+    }
+
+    /// The built-in scene of this name, or else the scene in the TOML file at this path.
+    ///
+    /// # Errors
+    /// Those of [`Scene::load`].
+    pub fn load(path_or_name: impl AsRef<Path>) -> Result<Self, SceneError> {
+        load_text(path_or_name.as_ref(), Self::from_toml)
+    }
+}
+
+/// Reads the text of the built-in scene of this name, or else of the file at this path.
+fn load_text<T>(
+    path: &Path,
+    parse: impl Fn(&str) -> Result<T, SceneError>,
+) -> Result<T, SceneError> {
+    if let Some(builtin) = path.to_str().and_then(Builtin::named) {
+        return parse(builtin.toml());
+    }
+    let text = read(path).map_err(|error| {
+        let path = path.to_owned();
+        if error.kind() == io::ErrorKind::NotFound {
+            SceneError::Unknown { path }
+        } else {
+            SceneError::Read { path, error }
+        }
+    })?;
+    parse(&text).map_err(|error| SceneError::InFile {
+        path: path.to_owned(),
+        error: Box::new(error),
+    })
+}
+
+/// Reads a file of at most [`LONGEST_FILE`] bytes: a device may have no end.
+fn read(path: &Path) -> io::Result<String> {
+    let mut text = String::new();
+    let length = File::open(path)?
+        .take(LONGEST_FILE + 1)
+        .read_to_string(&mut text)?;
+    if length as u64 > LONGEST_FILE {
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidData,
+            "it is over 1 MiB long, which no scene is",
+        ));
+    }
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{DEFAULT_SCENE, builtins};
+    use super::*;
+
+    #[test]
+    fn load_takes_a_builtin_name() {
+        let builtin = Scene::builtin("face-on").unwrap();
+        assert_eq!(Scene::load("face-on").unwrap(), builtin);
+        assert!(Scene::builtin(DEFAULT_SCENE).is_ok());
+        assert!(Scene::builtin("no-such-scene").is_err());
+    }
+
+    #[test]
+    fn load_reads_a_file_and_errors_name_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mine.toml");
+        let scene = Scene::builtin("inside").unwrap();
+        std::fs::write(&path, scene.to_toml()).unwrap();
+        assert_eq!(Scene::load(&path).unwrap(), scene);
+
+        std::fs::write(
+            &path,
+            scene.to_toml().replace("outer = 12.0", "outer = 2.0"),
+        )
+        .unwrap();
+        let message = Scene::load(&path).unwrap_err().to_string();
+        assert!(
+            message.contains("mine.toml") && message.contains("disk.outer"),
+            "{message}"
+        );
+
+        let message = Scene::load(folder.path()).unwrap_err().to_string();
+        assert!(
+            message.contains(&folder.path().display().to_string()),
+            "{message}"
+        );
+    }
+
+    #[test]
+    fn load_lists_the_builtin_names_where_nothing_is_found() {
+        let message = Scene::load("clasic").unwrap_err().to_string();
+        assert!(message.contains("clasic"), "{message}");
+        for builtin in builtins() {
+            assert!(message.contains(builtin.name()), "{message}");
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! What a scene is made of: a camera, a disk and a picture's size.
+
+use glam::DVec3;
+
+/// The largest error of an edge where none is given, in pixels: no 8-bit picture shows a thousandth of a pixel.
+pub const DEFAULT_TOLERANCE: f64 = 1e-3;
+
+/// A static observer's camera.
+///
+/// ```
+/// use darkness::scene::Camera;
+///
+/// // Looks at the hole, 30° up and down, with +y up in the picture.
+/// let camera = Camera {
+///     up: [0.0, 1.0, 0.0].into(),
+///     ..Camera::at([30.0, 0.0, 5.0], 30.0)
+/// };
+/// assert_eq!(camera.focus.length(), 0.0);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    /// Where the camera stands, in Schwarzschild radii; the hole is at the origin.
+    pub position: DVec3,
+    /// The point at the picture's centre.
+    pub focus: DVec3,
+    /// The direction that is up in the picture, of any length.
+    pub up: DVec3,
+    /// The vertical field of view, in degrees.
+    pub fov_degrees: f64,
+}
+
+impl Camera {
+    /// A camera at `position` that looks at the hole, with +z up.
+    pub fn at(position: impl Into<DVec3>, fov_degrees: f64) -> Self {
+        Self {
+            position: position.into(),
+            focus: DVec3::ZERO,
+            up: DVec3::Z,
+            fov_degrees,
+        }
+    }
+}
+
+/// A thin disk around the hole.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Disk {
+    /// The inner edge's radius, in Schwarzschild radii.
+    pub inner: f64,
+    /// The outer edge's radius, in Schwarzschild radii.
+    pub outer: f64,
+    /// The direction of the disk's axis, of any length.
+    pub normal: DVec3,
+}
+
+impl Disk {
+    /// A disk in the plane z = 0.
+    pub fn new(inner: f64, outer: f64) -> Self {
+        Self {
+            inner,
+            outer,
+            normal: DVec3::Z,
+        }
+    }
+}
+
+/// A picture's size, in pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ImageSize {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+/// A picture's size, and how its edges are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct ImageSettings {
+    pub(super) size: ImageSize,
+    /// Whether edges are smooth.
+    pub(super) antialias: bool,
+    /// The largest error of an edge, in pixels.
+    pub(super) tolerance: f64,
+}
