@@ -1,8 +1,5 @@
 //! Tables' files made by hand: whole, and not what anybody generates.
 
-// Each test is a program of its own, and takes what it needs.
-#![allow(dead_code)]
-
 use darkness::table::FixedBytes;
 use darkness::table::format::{MAGIC, VERSION};
 

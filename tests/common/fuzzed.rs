@@ -1,10 +1,10 @@
 //! What must hold of any bytes that somebody takes for a table, a scene, a range of frames or a list of rays: they are read or refused,
 //! and what is read can be worked with. Fuzzers run these on bytes of their own, tests on those that were kept.
 
-// Each program takes what it needs.
+// Each fuzzing program takes what it needs.
 #![allow(dead_code)]
 
-mod crafted;
+pub(crate) mod crafted;
 
 use std::collections::BTreeSet;
 use std::sync::OnceLock;

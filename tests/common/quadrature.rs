@@ -9,14 +9,11 @@
 //!   `2 ∫ dt/√(x + z)` from the turning point.
 //! * e² small, roots u1 < 0 < u2 < u3 of `u³ − u² + e²`, `u = u2 − (u2 − u1) sin² t`: `2 ∫ dt/√(u3 − u)`.
 
-// Each test is a program of its own, and takes what it needs.
-#![allow(dead_code)]
-
 use std::sync::OnceLock;
 
 use darkness::orbit::{Event, EventKind};
 
-use super::natural;
+use crate::natural;
 
 /// A ray, its numbers taken for exact.
 #[derive(Debug, Clone, Copy)]

@@ -1,0 +1,530 @@
+//! Guards against a table's file that is read although it is damaged, cut, foreign or of another version; against a
+//! write that leaves half a file or rubbish behind; and against bytes that depend on the machine's threads.
+
+use std::path::Path;
+
+use crate::fuzzed::crafted::{
+    Aligned, METADATA_AT, METADATA_LENGTH_AT, NUMBERS_LENGTH_AT, VERSION_AT, mend_preamble, sealed,
+    write_u32,
+};
+use darkness::table::format::{CONVENTIONS, VERSION};
+use darkness::table::{
+    FixedBytes, FormatError, Memory, Metadata, Nodes, Spec, Table, TableError, default_path,
+    generate, open, save,
+};
+
+/// Bytes seen through a reference: nothing is copied to ask about them.
+struct View<'a>(&'a [u8]);
+
+impl FixedBytes for View<'_> {}
+
+impl AsRef<[u8]> for View<'_> {
+    fn as_ref(&self) -> &[u8] {
+        self.0
+    }
+}
+
+fn draft() -> Table<Memory> {
+    generate(&Spec::named("draft").unwrap(), &|_, _| ()).unwrap()
+}
+
+/// What is wrong with the bytes.
+fn problem(bytes: &[u8]) -> FormatError {
+    match Table::from_bytes(View(bytes)) {
+        Err(problem) => problem,
+        Ok(table) => panic!("accepted: {:?}", table.metadata()),
+    }
+}
+
+/// What is wrong with bytes that may begin anywhere.
+fn problem_anywhere(bytes: &[u8]) -> FormatError {
+    problem(Aligned::new(bytes).as_ref())
+}
+
+fn encode(metadata: &impl serde::Serialize) -> Vec<u8> {
+    bincode::serde::encode_to_vec(metadata, bincode::config::standard()).unwrap()
+}
+
+/// The numbers of a table: all that follows its header.
+fn numbers_of(table: &Table<Memory>) -> &[u8] {
+    let header = METADATA_AT + encode(table.metadata()).len();
+    &table.bytes()[header.next_multiple_of(64)..]
+}
+
+/// The draft table with its metadata changed and everything else made to fit.
+fn with_metadata(change: impl FnOnce(&mut Metadata)) -> Aligned {
+    let table = draft();
+    let mut metadata = table.metadata().clone();
+    change(&mut metadata);
+    sealed(&encode(&metadata), numbers_of(&table))
+}
+
+#[test]
+fn the_crafted_file_is_the_real_one_where_nothing_is_changed() {
+    let table = draft();
+    assert_eq!(with_metadata(|_| ()).as_ref(), table.bytes());
+    assert!(Table::from_bytes(with_metadata(|_| ())).is_ok());
+    assert_eq!(table.metadata().conventions, CONVENTIONS);
+}
+
+#[test]
+fn every_changed_byte_is_refused() {
+    let mut bytes = Aligned::new(draft().bytes());
+    for at in 0..bytes.length {
+        // One bit, and all of them.
+        for change in [1 << (at % 8), 0xff] {
+            bytes.bytes_mut()[at] ^= change;
+            let problem = problem(bytes.as_ref());
+            match at {
+                0..VERSION_AT => assert_eq!(problem, FormatError::Foreign, "byte {at}"),
+                VERSION_AT..METADATA_LENGTH_AT => {
+                    assert!(
+                        matches!(problem, FormatError::Outdated { .. }),
+                        "byte {at}: {problem}"
+                    );
+                }
+                _ => assert!(
+                    matches!(problem, FormatError::Damaged { .. }),
+                    "byte {at}: {problem}"
+                ),
+            }
+            bytes.bytes_mut()[at] ^= change;
+        }
+    }
+    assert!(Table::from_bytes(bytes).is_ok());
+}
+
+#[test]
+fn every_shorter_and_longer_file_is_refused() {
+    let table = draft();
+    let bytes = table.bytes();
+    for length in 0..bytes.len() {
+        let problem = problem(&bytes[..length]);
+        let actual = length as u64;
+        match problem {
+            FormatError::Foreign => assert_eq!(length, 0),
+            FormatError::Length {
+                expected,
+                actual: told,
+            } => {
+                assert_eq!(told, actual);
+                let whole = if length < METADATA_AT {
+                    METADATA_AT
+                } else {
+                    bytes.len()
+                };
+                assert_eq!(expected, whole as u64, "cut to {length}");
+            }
+            other => panic!("cut to {length}: {other}"),
+        }
+    }
+    for more in [1, 7, 8, 64, 4096] {
+        for filler in [0, 0xff] {
+            let longer = [bytes, &vec![filler; more]].concat();
+            let expected = FormatError::Length {
+                expected: bytes.len() as u64,
+                actual: longer.len() as u64,
+            };
+            assert_eq!(problem_anywhere(&longer), expected);
+        }
+    }
+}
+
+#[test]
+fn other_files_are_called_foreign() {
+    let png = include_bytes!("../reference/masks/face-on.png");
+    for (name, bytes) in [
+        ("empty", &[][..]),
+        ("zeros", &[0; 4096]),
+        ("a picture", png),
+        ("text", b"[camera]\nposition = [30.0, 0.0, 5.0]\n"),
+        (
+            "a table after a transfer as text",
+            b"\x89DRK\n\x1A\n and more of it",
+        ),
+        (
+            "a table without its eighth bits",
+            b"\x09DRK\r\n\x1A\n and more of it",
+        ),
+    ] {
+        let problem = problem_anywhere(bytes);
+        assert_eq!(problem, FormatError::Foreign, "{name}");
+        assert!(
+            problem.to_string().contains("not a darkness table"),
+            "{name}: {problem}"
+        );
+    }
+}
+
+#[test]
+fn other_versions_are_named() {
+    for found in [0, VERSION + 1, 0x0100_0000, u32::MAX] {
+        let mut bytes = Aligned::new(draft().bytes());
+        write_u32(bytes.bytes_mut(), VERSION_AT, found);
+        // The preamble of another version may be laid out in another way: with and without a checksum that fits.
+        for mended in [false, true] {
+            if mended {
+                mend_preamble(bytes.bytes_mut());
+            }
+            let problem = problem(bytes.as_ref());
+            assert_eq!(problem, FormatError::Outdated { found });
+            let message = problem.to_string();
+            assert!(
+                message.contains(&found.to_string()) && message.contains(&VERSION.to_string()),
+                "{message}"
+            );
+        }
+    }
+}
+
+/// What a machine of the other byte order, or a tool that swaps words, makes of a table.
+#[test]
+fn swapped_bytes_are_called_so() {
+    let table = draft();
+    for width in [2, 4, 8] {
+        let words = table.bytes().chunks(width);
+        let swapped: Vec<u8> = words.flat_map(|word| word.iter().rev().copied()).collect();
+        let found = problem_anywhere(&swapped);
+        assert_eq!(found, FormatError::Swapped, "by {width}");
+        assert!(
+            found
+                .to_string()
+                .contains(&format!("reads format {VERSION}")),
+            "{found}"
+        );
+    }
+}
+
+#[test]
+fn misaligned_bytes_are_not_read_in_place() {
+    let table = draft();
+    for shift in [1, 4] {
+        let shifted = Aligned::new(&[&vec![0; shift], table.bytes()].concat());
+        let found = problem(&shifted.as_ref()[shift..]);
+        assert_eq!(found, FormatError::Misaligned, "shifted by {shift}");
+        assert!(found.to_string().contains("multiple of 8"), "{found}");
+    }
+}
+
+type Change = fn(&mut Metadata);
+
+/// Metadata that nobody's `generate` writes, under checksums that fit.
+#[test]
+fn senseless_metadata_is_refused() {
+    let changes: [(&str, Change); 15] = [
+        ("tolerance NaN", |m| m.spec.tolerance = f64::NAN),
+        ("tolerance 0", |m| m.spec.tolerance = 0.0),
+        ("tolerance < 0", |m| m.spec.tolerance = -1e-6),
+        ("tolerance infinite", |m| m.spec.tolerance = f64::INFINITY),
+        ("error NaN", |m| m.measured_error = f64::NAN),
+        ("error infinite", |m| m.measured_error = f64::INFINITY),
+        ("error < 0", |m| m.measured_error = -1e-7),
+        ("other conventions", |m| m.conventions.push('!')),
+        ("too few nodes", |m| m.spec.critical.orbit = 5),
+        ("another grid", |m| m.spec.weak.place += 1),
+        ("no nodes", |m| m.spec.radial.orbit = 0),
+        ("as many nodes as there are numbers", |m| {
+            m.spec.radial.orbit = u32::MAX;
+        }),
+        ("no name", |m| m.spec.name.clear()),
+        ("a name of many lines", |m| m.spec.name.push('\n')),
+        ("a name that terminals obey", |m| m.spec.name.push('\u{1b}')),
+    ];
+    let mut accepted = Vec::new();
+    for (name, change) in changes {
+        match Table::from_bytes(with_metadata(change)) {
+            Err(FormatError::Damaged { .. }) => (),
+            Err(other) => panic!("{name}: {other}"),
+            Ok(_) => accepted.push(name),
+        }
+    }
+    assert!(accepted.is_empty(), "accepted: {accepted:?}");
+}
+
+#[test]
+fn metadata_with_bytes_to_spare_and_numbers_that_are_none_are_refused() {
+    let table = draft();
+    let spare = [&encode(table.metadata())[..], &[0]].concat();
+    assert!(matches!(
+        problem(sealed(&spare, numbers_of(&table)).as_ref()),
+        FormatError::Damaged { .. }
+    ));
+    for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let mut numbers = numbers_of(&table).to_vec();
+        let middle = numbers.len() / 16 * 8;
+        numbers[middle..middle + 8].copy_from_slice(&value.to_le_bytes());
+        let bytes = sealed(&encode(table.metadata()), &numbers);
+        assert_eq!(
+            problem(bytes.as_ref()),
+            FormatError::Damaged {
+                what: "one of its numbers is not finite"
+            }
+        );
+    }
+}
+
+/// Every length there is, made absurd under checksums that fit: refused, and no memory asked for it. A request for
+/// one of the lengths of 2^44 bytes and more would end this process; one of 2^37 shows as address space.
+#[test]
+fn absurd_lengths_are_refused_without_being_believed() {
+    let table = draft();
+    for length in [
+        1 << 37,
+        1 << 44,
+        1 << 62,
+        u64::MAX - 320,
+        u64::MAX - 319,
+        u64::MAX,
+    ] {
+        let mut bytes = Aligned::new(table.bytes());
+        bytes.bytes_mut()[NUMBERS_LENGTH_AT..NUMBERS_LENGTH_AT + 8]
+            .copy_from_slice(&u64::to_le_bytes(length));
+        mend_preamble(bytes.bytes_mut());
+        assert!(
+            matches!(
+                problem(bytes.as_ref()),
+                FormatError::Length { .. } | FormatError::Damaged { .. }
+            ),
+            "{length} bytes of numbers"
+        );
+    }
+    for length in [0, 1, 4097, 1 << 20, u32::MAX] {
+        let mut bytes = Aligned::new(table.bytes());
+        write_u32(bytes.bytes_mut(), METADATA_LENGTH_AT, length);
+        mend_preamble(bytes.bytes_mut());
+        assert!(
+            matches!(
+                problem(bytes.as_ref()),
+                FormatError::Length { .. } | FormatError::Damaged { .. }
+            ),
+            "{length} bytes of metadata"
+        );
+    }
+    // Metadata begins with the length of a text: in bincode's form 253 stands before eight bytes of it.
+    for length in [1_u64 << 37, 1 << 44, u64::MAX] {
+        let mut metadata = vec![253];
+        metadata.extend(length.to_le_bytes());
+        metadata.extend(encode(table.metadata()));
+        assert!(matches!(
+            problem(sealed(&metadata, numbers_of(&table)).as_ref()),
+            FormatError::Damaged { .. }
+        ));
+    }
+    // Grids of 2^37 bytes and of more than 2^64.
+    for nodes in [4096, 1 << 17, u32::MAX] {
+        let grid = Nodes {
+            place: nodes,
+            orbit: nodes,
+        };
+        let bytes = with_metadata(|m| (m.spec.critical, m.spec.radial) = (grid, grid));
+        assert!(matches!(
+            problem(bytes.as_ref()),
+            FormatError::Damaged { .. }
+        ));
+    }
+    if let Some(peak) = peak_address_space() {
+        // The threads of a test program reserve some hundred megabytes.
+        assert!(peak < 1 << 36, "{peak} bytes of address space");
+    }
+}
+
+/// The most bytes of address space this process ever had, where the system tells.
+fn peak_address_space() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmPeak:"))?;
+    let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kilobytes << 10)
+}
+
+/// The names in a folder.
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_saved_table_is_whole_alone_and_opens_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("deep/down/draft.table");
+    let table = draft();
+    save(&table, &path).unwrap();
+    assert_eq!(names(path.parent().unwrap()), ["draft.table"]);
+    assert_eq!(std::fs::read(&path).unwrap(), table.bytes());
+    let opened = open(&path).unwrap();
+    assert_eq!(opened.metadata(), table.metadata());
+    assert_eq!(opened.bytes(), table.bytes());
+}
+
+/// A longer file is not left with its old end; and who has the old one open keeps it.
+#[test]
+fn saving_replaces_a_file_as_a_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("some.table");
+    std::fs::write(&path, vec![b'x'; 1 << 20]).unwrap();
+    let table = draft();
+    save(&table, &path).unwrap();
+    assert_eq!(std::fs::read(&path).unwrap(), table.bytes());
+
+    let before = open(&path).unwrap();
+    let mut spec = Spec::named("draft").unwrap();
+    spec.weak.orbit += 3;
+    let other = generate(&spec, &|_, _| ()).unwrap();
+    save(&other, &path).unwrap();
+    assert_eq!(before.bytes(), table.bytes());
+    assert_eq!(open(&path).unwrap().bytes(), other.bytes());
+    assert_eq!(names(folder.path()), ["some.table"]);
+}
+
+/// Compared with a plain new file's, so that whatever umask the tests run under is the one expected.
+#[cfg(unix)]
+#[test]
+fn a_saved_table_has_the_mode_of_any_new_file() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let mode = |path: &Path| std::fs::metadata(path).unwrap().permissions().mode();
+    let (plain, saved) = (folder.path().join("plain"), folder.path().join("t.table"));
+    std::fs::write(&plain, "").unwrap();
+    save(&draft(), &saved).unwrap();
+    assert_eq!(mode(&saved), mode(&plain), "{:o}", mode(&saved));
+}
+
+#[test]
+fn a_save_that_fails_names_the_file_and_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = draft();
+    // A folder stands where the file should go, or a file where the folder should be.
+    let taken = folder.path().join("taken.table");
+    std::fs::create_dir(&taken).unwrap();
+    std::fs::write(taken.join("inside"), "").unwrap();
+    std::fs::write(folder.path().join("file"), "as it was").unwrap();
+    let below = folder.path().join("file/some.table");
+    for path in [&taken, &below] {
+        let error = save(&table, path).unwrap_err();
+        assert!(matches!(error, TableError::Unwritable { .. }), "{error:?}");
+        let message = error.to_string();
+        assert!(message.contains(&path.display().to_string()), "{message}");
+        assert!(message.contains("-o"), "no remedy in: {message}");
+    }
+    assert_eq!(names(folder.path()), ["file", "taken.table"]);
+    assert_eq!(names(&taken), ["inside"]);
+    assert_eq!(
+        std::fs::read(folder.path().join("file")).unwrap(),
+        b"as it was"
+    );
+}
+
+#[test]
+fn a_file_that_cannot_be_opened_is_named_with_the_command_that_mends_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let message = |path: &Path| match open(path) {
+        Err(error) => (error.to_string(), error),
+        Ok(_) => panic!("{} opened", path.display()),
+    };
+
+    for (name, command) in [
+        ("fine.table", "darkness table fine -o '"),
+        ("mine.table", "darkness table standard -o '"),
+    ] {
+        let (text, error) = message(&at(name));
+        assert!(matches!(error, TableError::Missing { .. }), "{error:?}");
+        let remedy = format!("{command}{}'", at(name).display());
+        assert!(text.contains(&remedy), "{text}");
+        assert!(!text.contains("--force"), "nothing to overwrite: {text}");
+    }
+    // Where the program looks by itself no -o is needed.
+    for name in Spec::NAMES {
+        let path = default_path(name);
+        assert_eq!(path, Path::new("tables").join(format!("{name}.table")));
+        let text = TableError::Missing { path }.to_string();
+        assert!(text.contains(&format!("`darkness table {name}`")), "{text}");
+    }
+
+    std::fs::write(at("empty.table"), "").unwrap();
+    std::fs::write(at("draft.table"), &draft().bytes()[..1000]).unwrap();
+    for (name, command) in [
+        ("empty.table", "darkness table standard --force -o '"),
+        ("draft.table", "darkness table draft --force -o '"),
+    ] {
+        let (text, error) = message(&at(name));
+        assert!(matches!(error, TableError::Unusable { .. }), "{error:?}");
+        assert!(text.starts_with(&at(name).display().to_string()), "{text}");
+        assert!(text.contains(command), "{text}");
+    }
+
+    let (text, error) = message(folder.path());
+    assert!(matches!(error, TableError::Unusable { .. }), "{error:?}");
+    assert!(
+        text.contains(&folder.path().display().to_string()),
+        "{text}"
+    );
+}
+
+/// Also with an odd grid, so that the rows do not share out evenly.
+#[test]
+fn the_bytes_depend_on_the_specification_alone() {
+    let mut odd = Spec::named("draft").unwrap();
+    odd.critical.orbit = 29;
+    odd.trapped.orbit = 7;
+    for spec in [
+        Spec::named("draft").unwrap(),
+        odd,
+        Spec::named("standard").unwrap(),
+    ] {
+        let first = generate(&spec, &|_, _| ()).unwrap();
+        for threads in [1, 2, 5] {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
+            let again = pool.install(|| generate(&spec, &|_, _| ())).unwrap();
+            assert!(
+                again.bytes() == first.bytes(),
+                "{} differs with {threads} threads",
+                spec.name
+            );
+        }
+    }
+}
+
+/// A specification that no table can have makes none.
+#[test]
+fn a_grid_that_no_table_can_have_is_not_made() {
+    let draft = || Spec::named("draft").unwrap();
+    let few = Nodes {
+        place: 5,
+        orbit: 20,
+    };
+    let many = Nodes {
+        place: 20,
+        orbit: 4097,
+    };
+    for spec in [
+        Spec {
+            weak: few,
+            ..draft()
+        },
+        Spec {
+            radial: many,
+            ..draft()
+        },
+        Spec {
+            tolerance: f64::NAN,
+            ..draft()
+        },
+        Spec {
+            tolerance: 0.0,
+            ..draft()
+        },
+        Spec {
+            name: "n".repeat(5000),
+            ..draft()
+        },
+    ] {
+        assert!(generate(&spec, &|_, _| ()).is_none());
+    }
+}

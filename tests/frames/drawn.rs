@@ -1,0 +1,46 @@
+//! Frames as a user gets them: drawn by the program itself, which follows each pixel's ray by itself where it finds that
+//! its curves do not reach a view.
+
+use std::fs;
+
+use darkness::scene::Scene;
+use tempfile::{TempDir, tempdir};
+
+use crate::process::done;
+
+/// A folder with the standard table in it.
+pub(crate) struct Program {
+    folder: TempDir,
+}
+
+/// A picture, and how it came about.
+pub(crate) struct Drawn {
+    pub(crate) pixels: Vec<u8>,
+    /// Whether from curves, or else each pixel by itself.
+    pub(crate) by_curves: bool,
+}
+
+impl Program {
+    pub(crate) fn new() -> Self {
+        let program = Self {
+            folder: tempdir().unwrap(),
+        };
+        done(program.folder.path(), &["table", "standard"]);
+        program
+    }
+
+    pub(crate) fn draw(&self, scene: &Scene) -> Drawn {
+        let (file, picture) = (
+            self.folder.path().join("scene.toml"),
+            self.folder.path().join("scene.png"),
+        );
+        // What a pixel's centre sees can be compared with its ray.
+        fs::write(&file, scene.with_antialias(false).to_toml()).unwrap();
+        let (_, said) = done(self.folder.path(), &["render", "scene.toml"]);
+        let pixels = image::open(&picture).unwrap().to_luma8().into_raw();
+        Drawn {
+            pixels,
+            by_curves: !said.contains("followed by itself"),
+        }
+    }
+}
