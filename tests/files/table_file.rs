@@ -3,14 +3,15 @@
 
 use std::path::Path;
 
-use crate::fuzzed::crafted::{
-    Aligned, METADATA_AT, METADATA_LENGTH_AT, NUMBERS_LENGTH_AT, VERSION_AT, mend_preamble, sealed,
-    write_u32,
-};
 use darkness::table::format::{CONVENTIONS, VERSION};
 use darkness::table::{
     FixedBytes, FormatError, Memory, Metadata, Nodes, Spec, Table, TableError, default_path,
     generate, open, save,
+};
+
+use crate::fuzzed::crafted::{
+    Aligned, METADATA_AT, METADATA_LENGTH_AT, NUMBERS_LENGTH_AT, VERSION_AT, mend_preamble, sealed,
+    write_u32,
 };
 
 /// Bytes seen through a reference: nothing is copied to ask about them.
@@ -60,7 +61,7 @@ fn with_metadata(change: impl FnOnce(&mut Metadata)) -> Aligned {
 }
 
 #[test]
-fn the_crafted_file_is_the_real_one_where_nothing_is_changed() {
+fn a_crafted_file_without_changes_equals_the_real_one() {
     let table = draft();
     assert_eq!(with_metadata(|_| ()).as_ref(), table.bytes());
     assert!(Table::from_bytes(with_metadata(|_| ())).is_ok());
@@ -131,7 +132,7 @@ fn every_shorter_and_longer_file_is_refused() {
 }
 
 #[test]
-fn other_files_are_called_foreign() {
+fn a_file_of_another_kind_is_called_foreign() {
     let png = include_bytes!("../reference/masks/face-on.png");
     for (name, bytes) in [
         ("empty", &[][..]),
@@ -157,7 +158,7 @@ fn other_files_are_called_foreign() {
 }
 
 #[test]
-fn other_versions_are_named() {
+fn a_file_of_another_version_is_refused_with_its_version() {
     for found in [0, VERSION + 1, 0x0100_0000, u32::MAX] {
         let mut bytes = Aligned::new(draft().bytes());
         write_u32(bytes.bytes_mut(), VERSION_AT, found);
@@ -179,7 +180,7 @@ fn other_versions_are_named() {
 
 /// What a machine of the other byte order, or a tool that swaps words, makes of a table.
 #[test]
-fn swapped_bytes_are_called_so() {
+fn a_file_with_swapped_bytes_is_refused_as_such() {
     let table = draft();
     for width in [2, 4, 8] {
         let words = table.bytes().chunks(width);
@@ -210,7 +211,7 @@ type Change = fn(&mut Metadata);
 
 /// Metadata that nobody's `generate` writes, under checksums that fit.
 #[test]
-fn senseless_metadata_is_refused() {
+fn metadata_that_make_no_sense_are_refused() {
     let changes: [(&str, Change); 15] = [
         ("tolerance NaN", |m| m.spec.tolerance = f64::NAN),
         ("tolerance 0", |m| m.spec.tolerance = 0.0),
@@ -242,7 +243,7 @@ fn senseless_metadata_is_refused() {
 }
 
 #[test]
-fn metadata_with_bytes_to_spare_and_numbers_that_are_none_are_refused() {
+fn metadata_with_trailing_bytes_and_numbers_that_are_not_finite_are_refused() {
     let table = draft();
     let spare = [&encode(table.metadata())[..], &[0]].concat();
     assert!(matches!(
@@ -266,7 +267,7 @@ fn metadata_with_bytes_to_spare_and_numbers_that_are_none_are_refused() {
 /// Every length there is, made absurd under checksums that fit: refused, and no memory asked for it. A request for
 /// one of the lengths of 2^44 bytes and more would end this process; one of 2^37 shows as address space.
 #[test]
-fn absurd_lengths_are_refused_without_being_believed() {
+fn absurd_lengths_are_refused_before_memory_is_allocated() {
     let table = draft();
     for length in [
         1 << 37,
@@ -347,7 +348,7 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn a_saved_table_is_whole_alone_and_opens_again() {
+fn a_saved_table_opens_again_and_leaves_no_other_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("deep/down/draft.table");
     let table = draft();
@@ -418,7 +419,7 @@ fn a_save_that_fails_names_the_file_and_leaves_nothing() {
 }
 
 #[test]
-fn a_file_that_cannot_be_opened_is_named_with_the_command_that_mends_it() {
+fn an_error_names_the_file_and_the_command_that_mends_it() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let message = |path: &Path| match open(path) {
@@ -466,7 +467,7 @@ fn a_file_that_cannot_be_opened_is_named_with_the_command_that_mends_it() {
 
 /// Also with an odd grid, so that the rows do not share out evenly.
 #[test]
-fn the_bytes_depend_on_the_specification_alone() {
+fn a_tables_bytes_depend_on_its_specification_alone() {
     let mut odd = Spec::named("draft").unwrap();
     odd.critical.orbit = 29;
     odd.trapped.orbit = 7;
@@ -493,7 +494,7 @@ fn the_bytes_depend_on_the_specification_alone() {
 
 /// A specification that no table can have makes none.
 #[test]
-fn a_grid_that_no_table_can_have_is_not_made() {
+fn a_grid_that_no_table_can_have_is_refused() {
     let draft = || Spec::named("draft").unwrap();
     let few = Nodes {
         place: 5,

@@ -5,12 +5,13 @@
 use std::path::Path;
 use std::sync::Mutex;
 
-use crate::any_scene::{KINDS, any_scene};
-use crate::shares::{Errors, LEVEL, Lattice, Picture, SWEPT, described};
-use crate::tables::table;
 use darkness::render::coverage;
 use darkness::scene::{Scene, builtins};
 use proptest::test_runner::{Config, TestCaseError, TestRng, TestRunner};
+
+use crate::any_scene::{KINDS, any_scene};
+use crate::shares::{Errors, LEVEL, Lattice, Picture, SWEPT, described};
+use crate::tables::table;
 
 /// What no picture may exceed, in parts of full scale: root mean square, worst pixel, mean. A curve whose radius is
 /// R pixels is off its tangent by `1/8R` at a pixel's sides; whatever bends more is cut up, down to 1/16 of a side.

@@ -1,13 +1,14 @@
 //! Guards against greys that depend on how the frame was drawn: in tiles or pixel by pixel, on how many threads, into
 //! whose buffer, on which side of a mirror.
 
-use crate::any_scene::any_scene;
-use crate::shares::Picture;
-use crate::tables::table;
 use darkness::isoradial::Isoradials;
 use darkness::render::{RenderError, coverage, mask};
 use darkness::scene::{Scene, View, builtins};
 use proptest::prelude::*;
+
+use crate::any_scene::any_scene;
+use crate::shares::Picture;
+use crate::tables::table;
 
 fn picture(scene: &Scene) -> Picture {
     Picture::new(scene, &table("standard").lookup())

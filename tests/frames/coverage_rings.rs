@@ -3,10 +3,11 @@
 
 use core::f64::consts::PI;
 
-use crate::shares::{LEVEL, Picture, described};
-use crate::tables::table;
 use darkness::render::coverage;
 use darkness::scene::Scene;
+
+use crate::shares::{LEVEL, Picture, described};
+use crate::tables::table;
 
 fn drawn(text: &str) -> (Picture, Vec<f64>) {
     let scene = Scene::from_toml(text).unwrap_or_else(|error| panic!("{error}\n{text}"));

@@ -2,12 +2,13 @@
 //! the program draws, against each pixel's own exact ray. A pixel may differ where an edge is within a thousandth of a
 //! pixel of its centre, and nowhere else.
 
-use crate::drawn::Program;
-use crate::methods::{by_pixels, differing, sees_disk};
 use darkness::orbit::exact::Exact;
 use darkness::render::mask::WHITE;
 use darkness::scene::{Scene, View};
 use glam::DVec3;
+
+use crate::drawn::Program;
+use crate::methods::{by_pixels, differing, sees_disk};
 
 /// What a scene is made of here; the disk lies across z.
 #[derive(Debug, Clone, Copy)]
@@ -161,7 +162,7 @@ fn directions(position: DVec3) -> [(&'static str, DVec3); 3] {
 
 /// Every place with an ordinary disk, one that reaches out to 1e6, and in all directions.
 #[test]
-fn every_place_in_every_direction() {
+fn every_place_and_every_direction_is_drawn_right() {
     let program = Program::new();
     let mut count = Count::default();
     for (place, position, fov) in cameras() {
@@ -182,7 +183,7 @@ fn every_place_in_every_direction() {
 
 /// The widest lens there is in practice, and long ones: down to pictures of 1e-9° whose centre is on an edge.
 #[test]
-fn the_widest_and_the_longest_lens() {
+fn the_widest_and_the_longest_lenses_are_drawn_right() {
     let program = Program::new();
     let mut count = Count::default();
     for (place, position, fov) in cameras() {
@@ -203,7 +204,7 @@ fn the_widest_and_the_longest_lens() {
 
 /// A disk a millionth wide, seen by lenses that show its images from a tenth of a pixel to a hundred pixels thick.
 #[test]
-fn a_disk_a_millionth_wide() {
+fn a_disk_a_millionth_wide_is_drawn_right() {
     let program = Program::new();
     let mut count = Count::default();
     for (place, position, fov) in cameras() {
@@ -240,7 +241,7 @@ fn a_disk_a_millionth_wide() {
 
 /// In the plane of the disk, beyond its edge: a wide one's, and a narrow one's.
 #[test]
-fn in_the_plane_outside_the_disk() {
+fn a_camera_in_the_disks_plane_and_outside_it_is_drawn_right() {
     let program = Program::new();
     let mut count = Count::default();
     for (radius, outer, fov) in [
@@ -265,7 +266,7 @@ fn in_the_plane_outside_the_disk() {
 
 /// Pictures of one pixel, one row and one column.
 #[test]
-fn the_smallest_and_the_longest_pictures() {
+fn pictures_of_one_pixel_one_row_and_one_column_are_drawn_right() {
     let program = Program::new();
     let mut count = Count::default();
     let position = DVec3::new(28.0, 3.0, 6.0);
@@ -305,7 +306,7 @@ fn the_smallest_and_the_longest_pictures() {
 /// A disk so wide that no curve of its outer edge can be drawn, since it bends within 1e-12 of a half turn: each
 /// pixel's ray is followed by itself, and the program says so.
 #[test]
-fn a_disk_too_wide_for_curves() {
+fn a_disk_too_wide_for_curves_is_drawn_pixel_by_pixel() {
     let program = Program::new();
     let disk = (3.0, 1e20);
     let position = DVec3::new(1e6, 0.0, 1e-3);

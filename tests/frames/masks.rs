@@ -3,12 +3,13 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::methods::{by_curves, by_pixels, differing};
-use crate::tables::table;
 use darkness::orbit::exact::Exact;
 use darkness::orbit::integrate::Adaptive;
 use darkness::render::mask::WHITE;
 use darkness::scene::{Scene, builtins};
+
+use crate::methods::{by_curves, by_pixels, differing};
+use crate::tables::table;
 
 /// In a reference mask: moving the sample by a thousandth of a pixel changes the answer, either is right.
 const EITHER: u8 = 128;

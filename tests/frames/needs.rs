@@ -1,7 +1,6 @@
 //! Guards against curves that are worse than they promise, and against a promise that is padded: edges against their
 //! exact places over random scenes, and choices for a tolerance eight times as large, which must fail somewhere.
 
-use crate::tables::table;
 use darkness::isoradial::{Edge, Isoradials, Sight, height_at};
 use darkness::orbit::exact::Exact;
 use darkness::render::needs::Needs;
@@ -10,6 +9,8 @@ use darkness::table::Spec;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
+
+use crate::tables::table;
 
 /// How far the edges of `curves` are from where they are, at most, in pixels: at places between the nodes of every
 /// quarter turn, where the picture of `sight` shows them.

@@ -4,14 +4,15 @@
 
 use core::f64::consts::PI;
 
-use crate::methods::{SeenByCurves, sees_disk, sees_disk_by};
-use crate::natural;
-use crate::quadrature::TrueRay;
-use crate::tables::table;
 use darkness::orbit::exact::Exact;
 use darkness::orbit::{Event, EventKind, Fate, Orbits, Ray};
 use darkness::scene::{DEFAULT_TOLERANCE, Scene, View};
 use glam::DVec3;
+
+use crate::methods::{SeenByCurves, sees_disk, sees_disk_by};
+use crate::natural;
+use crate::quadrature::TrueRay;
+use crate::tables::table;
 
 const EDGES: [f64; 2] = [3.0, 12.0];
 
@@ -231,7 +232,7 @@ fn is_hidden(place: &Place) -> bool {
 }
 
 #[test]
-fn rings_zoomed_in_on_are_where_exact_rays_see_them() {
+fn photon_rings_through_a_long_lens_are_where_exact_rays_see_them() {
     let (mut compared, mut worst) = (0, 0.0_f64);
     for place in places().iter().filter(|place| !is_hidden(place)) {
         for order in 2..=5 {

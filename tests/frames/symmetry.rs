@@ -2,8 +2,6 @@
 //! arithmetic finds special: the photon sphere, the disk's plane and axis, the horizon, infinity, the line to the
 //! hole.
 
-use crate::methods::{by_curves, by_pixels, differing, sees_disk};
-use crate::tables::table;
 use darkness::orbit::exact::Exact;
 use darkness::orbit::integrate::{Adaptive, FixedStep, Scheme};
 use darkness::orbit::invariants::{CRITICAL_E2, Orbit};
@@ -12,6 +10,9 @@ use darkness::render::mask::WHITE;
 use darkness::scene::{Scene, View};
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
+
+use crate::methods::{by_curves, by_pixels, differing, sees_disk};
+use crate::tables::table;
 
 /// A camera at `position` that looks at `focus`, with +z up unless it looks along it.
 fn scene(position: DVec3, focus: DVec3, fov: f64, size: (u32, u32)) -> Scene {

@@ -1,11 +1,12 @@
 //! Guards against a tile that is filled although one of its pixels differs: whole frames against the same frames with
 //! every pixel asked by itself, over random scenes.
 
-use crate::tables::table;
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::render::mask::{render, render_every_pixel};
 use darkness::scene::{Scene, View, builtins};
 use proptest::prelude::*;
+
+use crate::tables::table;
 
 fn frames(scene: &Scene) -> (Vec<u8>, Vec<u8>) {
     let view = View::new(scene);

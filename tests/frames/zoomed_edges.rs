@@ -1,10 +1,11 @@
 //! Guards against curves that say they are right to a thousandth of a pixel and are not: through lenses of 1° to 1e-4°
 //! an edge of the disk is located by the curves of each table and by exact rays.
 
-use crate::methods::{SeenByCurves, sees_disk};
-use crate::tables::table;
 use darkness::scene::{DEFAULT_TOLERANCE, Scene, View};
 use glam::DVec3;
+
+use crate::methods::{SeenByCurves, sees_disk};
+use crate::tables::table;
 
 const SIDE: u32 = 64;
 
@@ -61,7 +62,7 @@ fn views() -> Vec<(DVec3, DVec3)> {
 }
 
 #[test]
-fn curves_that_reach_a_view_are_right_to_a_thousandth_of_a_pixel() {
+fn curves_that_claim_the_tolerance_are_right_to_a_thousandth_of_a_pixel() {
     let views = views();
     assert!(views.len() >= 18, "{} views", views.len());
     // The longest lens for which the curves of a table must do: a pixel is then more than a hundred times the angle

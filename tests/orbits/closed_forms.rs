@@ -3,14 +3,15 @@
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use crate::known_values::known_values;
-use crate::quadrature::TrueRay;
-use crate::tables::table;
 use darkness::orbit::exact::Exact;
 use darkness::orbit::invariants::{CRITICAL_E2, Orbit, Point};
 use darkness::orbit::path::SweptAngles;
 use darkness::orbit::{Event, EventKind, Fate, MIN_U, Orbits, Ray};
 use darkness::table::Lookup;
+
+use crate::known_values::known_values;
+use crate::quadrature::TrueRay;
+use crate::tables::table;
 
 /// What is measured: the exact method or a table, with its tolerance.
 enum Method {
@@ -79,7 +80,7 @@ const END: Event = Event {
 /// The quadrature that the methods are held against, itself against figures in print (Darwin 1959, *Proc. R. Soc.
 /// Lond. A* 249, 180, to 15 digits).
 #[test]
-fn quadrature_has_darwins_deflections() {
+fn quadrature_gives_darwins_deflections() {
     for row in known_values("deflection") {
         let ratio: f64 = row.argument.parse().unwrap();
         let truth = TrueRay::new(MIN_U, CRITICAL_E2.sqrt() / ratio);
@@ -93,7 +94,7 @@ fn quadrature_has_darwins_deflections() {
 /// The deflection of a ray from infinity by quadrature of `2 ∫ du/√(1/b² − u² + u³) − π`, the integral that Darwin
 /// (1959) turned into one in Legendre's form: from a share 1e-15 beyond the critical impact parameter to 1e12 radii.
 #[test]
-fn deflections_are_those_of_quadrature() {
+fn every_method_gives_the_deflections_of_quadrature() {
     let mut worst = [0.0_f64; 4];
     for k in 0..=540 {
         let excess = libm::pow(10.0, -15.0 + f64::from(k) / 20.0);
@@ -127,7 +128,7 @@ fn weak_term(n: i32) -> f64 {
 }
 
 #[test]
-fn weak_deflection_has_the_series_of_keeton_and_petters() {
+fn weak_deflection_converges_as_the_series_of_keeton_and_petters() {
     const M: f64 = 0.5;
     let printed = [
         4.0,

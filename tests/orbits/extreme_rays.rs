@@ -2,13 +2,14 @@
 //! radial, tangential. Fates are judged in whole numbers, angles by quadrature: neither shares a line with the
 //! methods under test.
 
-use crate::natural;
-use crate::quadrature::TrueRay;
-use crate::tables::table;
 use darkness::orbit::exact::Exact;
 use darkness::orbit::integrate::{Adaptive, FixedStep, Scheme};
 use darkness::orbit::invariants::Orbit;
 use darkness::orbit::{Event, EventKind, Fate, Orbits, Ray};
+
+use crate::natural;
+use crate::quadrature::TrueRay;
+use crate::tables::table;
 
 /// The exact method and the tables, with what each promises of an angle beside what rounding the ray's own numbers
 /// does to it.
@@ -150,7 +151,7 @@ impl Known {
 /// doubled precision: there an angle owes nothing to its condition, and is right to the method's tolerance and 8 ε of
 /// itself (some roundings of a root and of a logarithm).
 #[test]
-fn the_last_bits_beside_critical() {
+fn rays_one_bit_from_critical_have_the_right_fate_and_angles() {
     let methods = methods();
     let mut worst = [0.0_f64; 4];
     for u in starts() {
@@ -195,7 +196,7 @@ fn the_last_bits_beside_critical() {
 /// from critical. Δ is in doubled precision to 1e-3 of the slope, and right to 1000 ε of itself beyond: no angle owes
 /// more than some ε to either, whatever its condition.
 #[test]
-fn further_from_critical_by_powers_of_two() {
+fn rays_at_powers_of_two_from_critical_have_the_right_fate_and_angles() {
     let methods = methods();
     let mut worst = [0.0_f64; 4];
     for (k, u) in starts().into_iter().enumerate() {
@@ -223,7 +224,7 @@ fn further_from_critical_by_powers_of_two() {
 /// both sides, to 2⁻¹⁰⁰ of the slope's square within 8 units in the last place of critical, and elsewhere to what
 /// its factors carry: seven roundings of `|w| − s`, three more of the product.
 #[test]
-fn the_distance_from_critical_is_known_to_the_last_place() {
+fn the_distance_from_critical_is_right_to_the_last_place() {
     for u in starts() {
         let captured = natural::critical_slope(u).to_bits();
         for power in 0..=60_u32 {
@@ -256,7 +257,7 @@ fn the_distance_from_critical_is_known_to_the_last_place() {
 /// Guards against a radial ray that overflows: `|du/dφ|` from 1e12 to the largest number there is and infinity. Its
 /// angles are `|u − u0|/|du/dφ|`: `u̇² = e² − u²(1 − u)` varies by a share of 1/w² ≤ 1e-24 at most.
 #[test]
-fn radial_rays_sweep_what_a_straight_line_does() {
+fn nearly_radial_rays_sweep_the_angle_of_a_straight_line() {
     const SLOPES: [f64; 10] = [
         1e12,
         1e20,
@@ -314,7 +315,7 @@ fn radial_rays_sweep_what_a_straight_line_does() {
 /// Guards against a ray that starts at its turning point and is sent round it: du/dφ = +0, −0 and numbers too small to
 /// change anything give the same events, the angles right, at the photon sphere's neighbours too.
 #[test]
-fn tangential_rays_leave_their_turning_point_behind() {
+fn tangential_rays_start_at_their_turning_point() {
     for u in starts() {
         let mut known = Known::new(u, 0.0);
         assert!(known.truth.delta < 0.0);

@@ -3,12 +3,13 @@
 //! radius that is a depth d beyond lies an angle `2 √(2d/|ü|)`, `ü = u(1.5 u − 1)`, so half of all digits of d are
 //! lost; d itself is known here in whole numbers.
 
-use crate::natural;
-use crate::quadrature::TrueRay;
-use crate::tables::table;
 use darkness::orbit::exact::Exact;
 use darkness::orbit::integrate::Adaptive;
 use darkness::orbit::{Event, EventKind, Orbits, Ray};
+
+use crate::natural;
+use crate::quadrature::TrueRay;
+use crate::tables::table;
 
 fn methods() -> [(&'static str, &'static dyn Orbits, f64); 4] {
     [
@@ -181,7 +182,7 @@ fn crossings_of_a_grazed_edge_come_in_pairs_about_the_turning_point() {
 /// A camera on the edge's own radius that looks along it: the start is no crossing, and its neighbour one unit in the
 /// last place beyond has one crossing, at `√(2d/|ü|)`, to as many digits as d is known.
 #[test]
-fn an_edge_left_along_its_tangent() {
+fn rays_that_start_on_an_edge_along_its_tangent_cross_it_as_they_should() {
     for radius in [
         1.6_f64, 2.0, 3.0, 3.1, 12.0, 37.7, 1e4, 1e12, 1.02, 1.2, 1.4,
     ] {

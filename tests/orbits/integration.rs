@@ -1,9 +1,10 @@
 //! Guards against an integrator that loses a crossing, tells a ray's end wrongly, or is less accurate than it says:
 //! every event of every reference ray, in order.
 
-use crate::flights::{RADII, flights};
 use darkness::orbit::integrate::{Adaptive, FixedStep, Scheme};
 use darkness::orbit::{Orbits, Ray};
+
+use crate::flights::{RADII, flights};
 
 /// Beyond this angle a ray has come so near to critical that rounding, e^10 times larger at its end, decides.
 const WOUND: f64 = 10.0;

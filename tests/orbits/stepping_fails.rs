@@ -1,11 +1,12 @@
 //! Guards against a claim that is no longer true: next to the critical ray plain steps misjudge whether a ray falls in,
 //! where the table does not. So does adaptive integration at its tolerance, beyond the 10 radians that it promises.
 
+use darkness::orbit::integrate::{Adaptive, FixedStep, Scheme};
+use darkness::orbit::{EventKind, Fate, Orbits, Ray};
+
 use crate::natural;
 use crate::quadrature::TrueRay;
 use crate::tables::table;
-use darkness::orbit::integrate::{Adaptive, FixedStep, Scheme};
-use darkness::orbit::{EventKind, Fate, Orbits, Ray};
 
 /// Rays that wind about the photon sphere, towards the hole from outside and away from it from inside: their slopes as
 /// `slope(critical slope)`.

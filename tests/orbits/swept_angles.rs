@@ -2,9 +2,6 @@
 //! exact method and the three tables against the reference's rays, against each other everywhere else, against the
 //! integrated equation, and against figures in print.
 
-use crate::flights::{RADII, flights};
-use crate::known_values::{KnownValue, known_values};
-use crate::tables::table;
 use core::f64::consts::{FRAC_PI_2, PI};
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
@@ -12,6 +9,10 @@ use darkness::orbit::integrate::Adaptive;
 use darkness::orbit::invariants::{CRITICAL_E2, Orbit, Point};
 use darkness::orbit::path::SweptAngles;
 use darkness::orbit::{Event, EventKind, MIN_U, Orbits, Ray};
+
+use crate::flights::{RADII, flights};
+use crate::known_values::{KnownValue, known_values};
+use crate::tables::table;
 
 /// Every event of every reference ray, each angle within `tolerance + 16 ε·condition` (the budgets of design sections
 /// 2 and 3; 16 ε·condition is what some units in the last place of the ray's own numbers do to the angle).
@@ -55,28 +56,28 @@ fn check_against_reference(name: &str, method: &impl Orbits, tolerance: f64) {
 }
 
 #[test]
-fn exact_angles_are_the_references() {
+fn exact_angles_equal_the_reference() {
     check_against_reference("exact", &Exact, 1e-12);
 }
 
 #[test]
-fn draft_angles_are_the_references() {
+fn angles_from_the_draft_table_equal_the_reference() {
     check_against_reference("draft", table("draft"), 1e-6);
 }
 
 #[test]
-fn standard_angles_are_the_references() {
+fn angles_from_the_standard_table_equal_the_reference() {
     check_against_reference("standard", table("standard"), 1e-9);
 }
 
 #[test]
-fn fine_angles_are_the_references() {
+fn angles_from_the_fine_table_equal_the_reference() {
     check_against_reference("fine", table("fine"), 1e-12);
 }
 
 /// The budgets of design section 3.
 #[test]
-fn tables_are_as_small_and_as_right_as_promised() {
+fn tables_are_as_small_and_as_accurate_as_promised() {
     for (name, tolerance, most_bytes) in [
         ("draft", 1e-6, 32 << 10),
         ("standard", 1e-9, 512 << 10),
@@ -316,22 +317,22 @@ fn check_against_exact(population: &str, rays: &[(f64, f64)]) {
 }
 
 #[test]
-fn the_table_is_right_about_its_charts_borders() {
+fn tables_are_accurate_at_the_borders_of_their_charts() {
     check_against_exact("borders", &border_rays());
 }
 
 #[test]
-fn the_table_is_right_about_the_critical_ray() {
+fn tables_are_accurate_near_the_critical_ray() {
     check_against_exact("near critical", &near_critical_rays());
 }
 
 #[test]
-fn the_table_is_right_at_the_extremes() {
+fn tables_are_accurate_for_the_most_extreme_rays() {
     check_against_exact("extremes", &extreme_rays());
 }
 
 #[test]
-fn the_table_is_right_everywhere_else() {
+fn tables_are_accurate_for_all_other_rays() {
     check_against_exact("spread", &spread_rays());
 }
 
@@ -373,7 +374,7 @@ fn rays_of_chart(chart: &str) -> Vec<(f64, f64)> {
 /// Every table keeps its own promise in every chart, off its grid: against the exact answer for the same orbit, so
 /// that beside the tolerance there is only rounding, 16 ε of the angle.
 #[test]
-fn tables_are_as_right_as_promised_all_over_every_chart() {
+fn tables_are_as_accurate_as_promised_throughout_every_chart() {
     let mut broken = Vec::new();
     for name in ["draft", "standard", "fine"] {
         let table = table(name);
@@ -411,7 +412,7 @@ fn tables_are_as_right_as_promised_all_over_every_chart() {
 /// the exact method's 1e-12 and 64 ε·condition, condition below 1/1e-3 for rays at least that share from critical,
 /// add under 2e-11.
 #[test]
-fn exact_angles_solve_the_equation() {
+fn exact_angles_solve_the_orbit_equation() {
     const ALLOWED: f64 = 1.02e-9;
     let (mut compared, mut worst) = (0, 0.0_f64);
     for k in 0..400 {
@@ -462,7 +463,7 @@ fn from_infinity(delta: f64) -> Orbit {
 
 /// Deflection of a ray from infinity back to infinity: what it sweeps less π (Darwin 1959). Printed with 15 digits.
 #[test]
-fn deflections_are_darwins() {
+fn deflections_equal_darwins() {
     let rows = known_values("deflection");
     assert_eq!(rows.len(), 12);
     for KnownValue {
@@ -495,7 +496,7 @@ fn deflections_are_darwins() {
 /// `α → −ln(b/b_c − 1) + ln(216(7 − 4√3)) − π` (Bozza 2002, eq. 35 for the Schwarzschild hole; the next terms are of
 /// the order ε ln ε, ε = `b/b_c − 1`).
 #[test]
-fn strong_deflection_is_bozzas() {
+fn strong_deflections_equal_bozzas() {
     let [constant] = &known_values("strong_deflection_constant")[..] else {
         panic!("one row")
     };
@@ -530,7 +531,7 @@ fn straddles(
 /// Closest approach of the rays that are deflected by whole turns (Virbhadra & Ellis 2000, table 1): `2 φ(periapsis →
 /// ∞) − π = 2πn`.
 #[test]
-fn closest_approaches_are_virbhadras_and_ellis() {
+fn closest_approaches_equal_those_of_virbhadra_and_ellis() {
     let rows = known_values("closest_approach_alpha_2pi_n");
     assert_eq!(rows.len(), 2);
     for row in rows {
@@ -590,7 +591,7 @@ fn rounding_near_critical(b: f64) -> f64 {
 /// The borders of the lensing ring and of the photon ring (Gralla, Holz & Wald 2019, eqs 6 and 7; b over M, half a
 /// Schwarzschild radius): rays that sweep ¾ and 1¼ turns from end to end.
 #[test]
-fn ring_borders_are_those_of_gralla_holz_and_wald() {
+fn ring_borders_equal_those_of_gralla_holz_and_wald() {
     for row in known_values("band_edge_b_over_M") {
         let target = match &row.argument[..] {
             "inner lensed" | "outer lensed" => 1.5 * PI,
@@ -735,7 +736,7 @@ fn rings_thin_out_by_a_factor_of_exp_pi() {
 
 /// The shadow of a static camera: `cot α = κ_c` (Synge 1966). Printed to ten digits.
 #[test]
-fn shadows_are_synges() {
+fn shadows_are_as_wide_as_synges() {
     let rows = known_values("shadow_half_angle_deg");
     assert_eq!(rows.len(), 4);
     for row in rows {
@@ -763,7 +764,7 @@ fn shadows_are_synges() {
 }
 
 #[test]
-fn the_critical_impact_parameter_is_that_of_the_tables() {
+fn the_critical_impact_parameter_equals_the_published_one() {
     let [row] = &known_values("critical_impact_parameter")[..] else {
         panic!("one row")
     };

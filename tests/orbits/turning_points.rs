@@ -68,7 +68,7 @@ fn all_methods_find_the_root_at_the_same_angle() {
 }
 
 #[test]
-fn rays_that_do_not_turn_have_none() {
+fn rays_that_do_not_turn_have_no_turning_point() {
     let table = generate(&Spec::named("draft").unwrap(), &|_, _| ()).unwrap();
     let methods: [&dyn Orbits; 4] = [
         &Exact,

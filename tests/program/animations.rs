@@ -6,11 +6,12 @@ use std::fs;
 use std::io;
 use std::process::Command;
 
-use crate::harness::{PATTERN, done, files, refused, run, with_animation};
 use tempfile::tempdir;
 
+use crate::harness::{PATTERN, done, files, refused, run, with_animation};
+
 #[test]
-fn frames_are_numbered_files_that_say_what_they_were_made_of() {
+fn frames_are_numbered_files_that_record_what_they_were_made_of() {
     let folder = with_animation(12);
     let here = folder.path();
     let (_, stderr) = done(here, &["render", "small.toml", "-o", PATTERN]);
@@ -146,7 +147,7 @@ fn any_chunks_on_any_threads_give_the_same_files() {
 }
 
 #[test]
-fn a_film_is_its_header_and_its_frames() {
+fn a_film_consists_of_its_header_and_its_frames() {
     let folder = with_animation(6);
     let here = folder.path();
     let (raw, _) = done(
@@ -187,7 +188,7 @@ fn a_film_is_its_header_and_its_frames() {
 }
 
 #[test]
-fn a_frame_that_cannot_be_is_no_other_frames_matter() {
+fn an_invalid_frame_does_not_affect_the_others() {
     let folder = with_animation(101);
     let here = folder.path();
     // The camera comes to its focus at frame 51, the middle one.
@@ -217,7 +218,7 @@ fn a_frame_that_cannot_be_is_no_other_frames_matter() {
 }
 
 #[test]
-fn misuse_is_told_before_anything_is_done() {
+fn misuse_is_reported_before_anything_is_done() {
     let folder = with_animation(20);
     let here = folder.path();
     let misused = |args: &[&str], words: &[&str]| {
@@ -262,7 +263,7 @@ fn misuse_is_told_before_anything_is_done() {
 }
 
 #[test]
-fn a_camera_that_goes_where_none_can_be_is_refused_before_the_first_frame() {
+fn a_camera_path_through_the_disk_or_hole_is_refused_before_the_first_frame() {
     let folder = with_animation(40);
     let here = folder.path();
     let toml = fs::read_to_string(here.join("small.toml")).unwrap();
@@ -318,7 +319,7 @@ fn a_dry_run_lists_frames_and_files_and_draws_nothing() {
 }
 
 #[test]
-fn a_worker_makes_no_table_unasked() {
+fn a_worker_makes_no_table_unless_asked_to() {
     let folder = tempdir().unwrap();
     let here = folder.path();
     let args = [
@@ -350,7 +351,7 @@ fn a_worker_makes_no_table_unasked() {
 }
 
 #[test]
-fn progress_is_told_as_it_is_asked_for() {
+fn progress_is_reported_in_the_form_that_is_asked_for() {
     let folder = with_animation(30);
     let here = folder.path();
     let stderr = |progress: &[&str]| {

@@ -123,7 +123,7 @@ fn check_xml(text: &str) {
 }
 
 #[test]
-fn a_quick_chart_has_every_method_and_tells_its_errors_and_failures() {
+fn a_quick_chart_has_every_method_with_its_errors_and_failures() {
     let folder = tempdir().unwrap();
     small_scene(folder.path());
     let args = [

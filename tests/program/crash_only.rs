@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use crate::harness::{PATTERN, PROGRAM, darkness, done, files, refused, run, with_animation};
 
 #[test]
-fn a_rerun_draws_what_is_missing_damaged_or_of_something_else() {
+fn a_rerun_draws_frames_that_are_missing_damaged_or_of_another_scene_or_table() {
     let folder = with_animation(10);
     let here = folder.path();
     let out = here.join("out");
@@ -41,7 +41,7 @@ fn a_rerun_draws_what_is_missing_damaged_or_of_something_else() {
 }
 
 #[test]
-fn what_a_killed_worker_left_is_removed_and_what_is_a_live_ones_or_somebody_elses_is_not() {
+fn files_of_a_killed_worker_are_removed_and_those_of_others_are_kept() {
     let folder = with_animation(5);
     let here = folder.path();
     let out = here.join("out");
@@ -80,7 +80,7 @@ fn what_a_killed_worker_left_is_removed_and_what_is_a_live_ones_or_somebody_else
 }
 
 #[test]
-fn one_frame_that_cannot_be_written_stops_no_other() {
+fn a_frame_that_cannot_be_written_stops_no_other() {
     let folder = with_animation(12);
     let here = folder.path();
     for number in [3, 4, 9] {
@@ -177,7 +177,7 @@ fn a_film_that_cannot_be_written_is_not_left_half() {
 }
 
 #[test]
-fn nothing_is_written_over_what_is_read_by_whatever_name() {
+fn a_file_that_is_read_is_not_overwritten_under_any_name() {
     let folder = with_animation(5);
     let here = folder.path();
     fs::copy(here.join("small.toml"), here.join("f_0003.png")).unwrap();
@@ -246,7 +246,7 @@ fn nothing_is_written_over_what_is_read_by_whatever_name() {
 
 /// Guards against a wait for a pipe's other end, and for the end of what has none.
 #[test]
-fn pipes_and_devices_in_the_place_of_frames_are_failures_of_these_frames() {
+fn a_pipe_or_device_in_place_of_a_frame_fails_that_frame_only() {
     let folder = with_animation(6);
     let here = folder.path();
     fs::create_dir(here.join("out")).unwrap();
@@ -289,7 +289,7 @@ fn wait_for(folder: &Path, frames: usize) {
 }
 
 #[test]
-fn killed_at_any_moment_and_run_again_the_files_are_the_same() {
+fn a_batch_killed_at_any_moment_and_run_again_gives_the_same_files() {
     let folder = with_animation(300);
     let here = folder.path();
     let begun = Instant::now();

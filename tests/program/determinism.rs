@@ -45,7 +45,7 @@ fn same_bytes(folder: &Path, args: &[&str]) -> Vec<u8> {
 }
 
 #[test]
-fn the_same_table_picture_and_angles_whatever_the_threads_and_the_processor() {
+fn tables_pictures_and_angles_do_not_depend_on_threads_or_processor() {
     let folder = tempdir().unwrap();
     let here = folder.path();
     let tables = WAYS.map(|way| {

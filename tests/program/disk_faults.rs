@@ -90,7 +90,7 @@ fn left(here: &Path) -> Vec<String> {
 }
 
 #[test]
-fn a_quota_is_told_and_leaves_nothing_half() {
+fn a_quota_is_reported_and_leaves_no_partial_file() {
     let folder = prepared();
     let here = folder.path();
     fs::create_dir(here.join("out")).unwrap();
@@ -114,7 +114,7 @@ fn a_quota_is_told_and_leaves_nothing_half() {
 /// On a disk of its own that is as good as full, where the system lets users mount one.
 #[test]
 #[cfg(target_os = "linux")]
-fn a_full_disk_is_told_and_leaves_nothing_half() {
+fn a_full_disk_is_reported_and_leaves_no_partial_file() {
     if !tools::has("unshare") {
         return;
     }
@@ -163,7 +163,7 @@ fn a_full_disk_is_told_and_leaves_nothing_half() {
 
 /// As a user who has no right there; an ordinary one, if the tests are run by one who has all rights.
 #[test]
-fn what_may_not_be_written_or_read_is_told_and_stays() {
+fn files_without_permission_are_reported_and_left_alone() {
     let folder = prepared();
     let here = folder.path();
     let mode = |name: &str, mode: u32| {

@@ -10,10 +10,11 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use crate::harness::{PROGRAM, files};
-use crate::tools;
 use darkness::scene::Animation;
 use tempfile::tempdir;
+
+use crate::harness::{PROGRAM, files};
+use crate::tools;
 
 /// Whether the tools are there.
 fn has(tools: &[&str]) -> bool {
@@ -62,7 +63,7 @@ fn write_scene(path: &Path) {
 }
 
 #[test]
-fn the_readmes_line_makes_a_film_with_the_right_range_and_colours() {
+fn the_command_in_the_readme_makes_a_film_with_the_right_range_and_colours() {
     if !has(&["ffmpeg", "ffprobe"]) {
         return;
     }

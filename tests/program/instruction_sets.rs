@@ -38,7 +38,7 @@ fn every_instruction_set_draws_the_same_bytes() {
 }
 
 #[test]
-fn another_name_is_refused() {
+fn an_unknown_instruction_set_is_refused() {
     let mut command = darkness(Path::new("."), &["scene"]);
     command.env("DARKNESS_SIMD", "avx3");
     fails(&command.output().unwrap(), 2, &["avx3", "sse4.2"]);

@@ -1,7 +1,7 @@
 //! Guards against what only shows in time: memory and open files that grow with the frames, a process that is stopped and goes on, a
 //! reader slower than what it reads, clocks that jump.
 //!
-//! `cargo test --release --test long_runs -- --ignored --nocapture` draws a hundred thousand frames each way.
+//! `cargo test --release --test program long_runs -- --ignored --nocapture` draws a hundred thousand frames each way.
 #![cfg(target_os = "linux")]
 
 use std::fs;
@@ -105,7 +105,7 @@ fn signal(child: &Child, name: &str) {
 
 /// Guards against a system call that is interrupted and taken for a failure, and against a lock that is lost.
 #[test]
-fn a_run_that_is_stopped_and_goes_on_does_all_its_work() {
+fn a_run_that_is_paused_and_resumed_does_all_its_work() {
     let folder = with_animation(1000);
     let here = folder.path();
     done(here, &["render", "small.toml", "-o", "whole.y4m"]);
@@ -134,7 +134,7 @@ fn a_run_that_is_stopped_and_goes_on_does_all_its_work() {
 
 /// Guards against frames that pile up in memory, are lost or come twice.
 #[test]
-fn a_slow_reader_gets_every_frame_and_the_others_wait() {
+fn a_slow_reader_gets_every_frame_and_no_frames_pile_up() {
     let folder = with_animation(1500);
     let here = folder.path();
     done(here, &["render", "small.toml", "-o", "whole.y4m"]);

@@ -7,10 +7,11 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::harness::{darkness, done, files, refused, with_animation};
 use darkness::output::write_whole;
 use darkness::table::{self, Spec, TableError, generate};
 use tempfile::tempdir;
+
+use crate::harness::{darkness, done, files, refused, with_animation};
 
 fn start(folder: &Path, args: &[&str]) -> Child {
     darkness(folder, args)
@@ -32,7 +33,7 @@ fn is_there(path: &Path) -> bool {
 
 /// Guards against a table of which a part is there, and against leftovers that nobody removes.
 #[test]
-fn killed_at_any_moment_the_table_is_the_old_one_or_the_new() {
+fn a_writer_killed_at_any_moment_leaves_the_old_table_or_the_new_one() {
     let folder = tempdir().unwrap();
     let here = folder.path();
     let path = here.join("a.table");
@@ -65,7 +66,7 @@ fn killed_at_any_moment_the_table_is_the_old_one_or_the_new() {
 }
 
 #[test]
-fn several_at_once_make_one_whole_table() {
+fn several_writers_at_once_make_one_whole_table() {
     let folder = tempdir().unwrap();
     let here = folder.path();
     let make = ["table", "draft", "-o", "a.table", "--force"];
@@ -85,7 +86,7 @@ fn several_at_once_make_one_whole_table() {
 }
 
 #[test]
-fn a_table_that_is_replaced_while_it_is_mapped_stays_what_it_was() {
+fn a_mapped_table_does_not_change_when_its_file_is_replaced() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("a.table");
     let made = |name| generate(&Spec::named(name).unwrap(), &|_, _| ()).unwrap();
@@ -100,7 +101,7 @@ fn a_table_that_is_replaced_while_it_is_mapped_stays_what_it_was() {
 
 /// Guards against a signal for a table that somebody cuts short: one that is read into memory is not his any more.
 #[test]
-fn a_table_that_is_cut_short_while_it_is_used_is_whole_in_memory() {
+fn without_mmap_a_table_that_is_cut_short_stays_whole() {
     let folder = with_animation(400);
     let here = folder.path();
     let draw = [
@@ -182,7 +183,7 @@ fn a_disk_that_fills_up_after_any_byte_leaves_the_old_table_and_nothing_else() {
 
 /// Guards against a wait for the other end of a pipe, and for the end of what has none.
 #[test]
-fn what_is_no_file_of_a_table_is_refused_at_once() {
+fn pipes_devices_and_folders_are_refused_at_once() {
     let folder = tempdir().unwrap();
     let here = folder.path();
     let made = Command::new("mkfifo").arg(here.join("pipe")).status();
@@ -255,7 +256,7 @@ fn a_file_of_another_length_is_refused_before_it_is_mapped() {
 
 /// Guards against memory and time for what only says that it is a table, however long it is.
 #[test]
-fn a_terabyte_that_is_none_of_a_table_is_refused_by_its_beginning() {
+fn a_sparse_file_of_a_terabyte_is_refused_by_its_beginning() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("a.table");
     let length = 1_u64 << 40;
@@ -329,7 +330,7 @@ fn many_processes_share_the_memory_of_one_table() {
 
 /// Guards against a file that is otherwise than its documentation draws it: a reader that knows only that reads it.
 #[test]
-fn the_documented_layout_is_the_files() {
+fn the_documented_layout_is_the_one_of_the_files() {
     let python = Command::new("python3").arg("--version").output();
     if !python.is_ok_and(|python| python.status.success()) {
         eprintln!("python3 is not installed: passed over");

@@ -8,7 +8,7 @@ use crate::harness::{PROGRAM, done, files, refused, with_animation};
 
 /// Guards against a picture that is asked for and takes the memory of all that runs beside it.
 #[test]
-fn pictures_too_large_are_refused_before_their_memory_is_asked_for() {
+fn pictures_that_are_too_large_are_refused_before_memory_is_allocated() {
     let folder = with_animation(12);
     let here = folder.path();
     for size in [
@@ -100,7 +100,7 @@ fn pictures_too_large_are_refused_before_their_memory_is_asked_for() {
 /// Guards against the end of the process where memory is refused: what the system says is told.
 #[test]
 #[cfg(target_os = "linux")]
-fn memory_that_the_system_refuses_is_told() {
+fn memory_that_the_system_refuses_is_reported() {
     let folder = with_animation(1);
     let here = folder.path();
     let mut refused = 0;

@@ -42,7 +42,7 @@ fn is_sentence(said: &str) {
 
 /// Guards against a file that grows for as long as its own growth is read, and against a scene under what is drawn of it.
 #[test]
-fn what_is_read_is_not_written_to_by_the_standard_output() {
+fn a_file_that_is_read_is_not_written_to_by_redirection() {
     let folder = with_animation(2);
     let here = folder.path();
     let rays = format!("u0,dudphi\n{}", "0.03,0.1\n".repeat(20_000));
@@ -73,7 +73,7 @@ fn what_is_read_is_not_written_to_by_the_standard_output() {
 
 /// Guards against variables and limits that reach deeper than the program's own options.
 #[test]
-fn the_surroundings_change_nothing() {
+fn environment_variables_and_limits_change_nothing() {
     let folder = with_animation(2);
     let here = folder.path();
     for (line, code) in [

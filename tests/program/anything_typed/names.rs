@@ -10,7 +10,7 @@ use super::{is_sentence, typed, words};
 use crate::harness::{PROGRAM, done, files, refused, with_animation};
 
 #[test]
-fn ranges_that_make_no_sense_are_misuse_and_the_longest_are_none() {
+fn ranges_that_make_no_sense_are_refused_and_the_longest_are_accepted() {
     let folder = with_animation(9);
     let here = folder.path();
     for range in [
@@ -78,7 +78,7 @@ fn ranges_that_make_no_sense_are_misuse_and_the_longest_are_none() {
 }
 
 #[test]
-fn names_with_ways_up_and_of_any_bytes() {
+fn names_may_lead_upwards_and_have_any_bytes() {
     let folder = with_animation(2);
     let here = folder.path();
     fs::create_dir(here.join("a")).unwrap();
@@ -184,7 +184,7 @@ fn names_with_ways_up_and_of_any_bytes() {
 
 /// Guards against commands that take a file's name for an option, and terminals that take it for an order.
 #[test]
-fn names_that_could_be_taken_for_something_else() {
+fn names_that_look_like_options_or_patterns_are_taken_as_names() {
     let folder = with_animation(2);
     let here = folder.path();
     fs::rename(here.join("small.toml"), here.join("-x.toml")).unwrap();

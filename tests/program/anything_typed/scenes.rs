@@ -148,7 +148,7 @@ fn scene() -> impl Strategy<Value = Vec<u8>> {
 }
 
 #[test]
-fn a_thousand_scenes_are_drawn_or_refused() {
+fn a_thousand_random_scenes_are_each_drawn_or_refused() {
     let folder = with_animation(1);
     let here = folder.path();
     let render = |animated: bool| {

@@ -16,7 +16,7 @@ use crate::harness::{PROGRAM, REFERENCE_RAYS, darkness, listing, printed, refuse
 const SMALL: &str = "96x54";
 
 #[test]
-fn bad_options_are_misuse() {
+fn bad_options_are_refused_as_misuse() {
     let folder = tempdir().unwrap();
     let here = folder.path();
     for (args, words) in [
@@ -54,7 +54,7 @@ fn bad_options_are_misuse() {
 }
 
 #[test]
-fn help_and_version_are_answers_and_no_verb_is_misuse() {
+fn help_and_version_succeed_and_a_missing_verb_is_misuse() {
     let folder = tempdir().unwrap();
     let here = folder.path();
     for args in [

@@ -86,7 +86,7 @@ fn a_picture_takes_the_smallest_table_that_is_good_enough() {
 }
 
 #[test]
-fn tolerances_that_make_no_sense_are_misuse() {
+fn tolerances_that_make_no_sense_are_refused_as_misuse() {
     let folder = tempdir().unwrap();
     for (args, words) in [
         (&["--tolerance", "0"][..], "image.tolerance = 0.0"),

@@ -54,7 +54,7 @@ fn scenes_are_listed_and_a_printed_one_renders_the_same_picture() {
 }
 
 #[test]
-fn scenes_that_are_no_scenes_are_refused_in_a_sentence() {
+fn files_that_are_not_scenes_are_refused_in_a_sentence() {
     let folder = tempdir().unwrap();
     let here = folder.path();
     let scene = builtins()[0].toml();

@@ -13,7 +13,7 @@ use crate::harness::{
 };
 
 #[test]
-fn only_the_default_table_is_made_unasked() {
+fn only_the_default_table_is_made_without_being_asked_for() {
     let folder = tempdir().unwrap();
     let here = folder.path();
     let render = ["render", "--size", SMALL];
@@ -138,7 +138,7 @@ fn a_table_is_made_once_and_replaced_only_on_demand() {
 }
 
 #[test]
-fn inspect_and_verify_tell_what_a_table_is() {
+fn inspect_and_verify_describe_a_table() {
     let folder = with_draft();
     let here = folder.path();
     let size = fs::metadata(here.join("a.table")).unwrap().len();

@@ -2,7 +2,6 @@
 
 use std::fs;
 
-use crate::reference_rays::reference_rays;
 use darkness::orbit::exact::Exact;
 use darkness::orbit::{EventKind, Fate, Orbits, Ray};
 use tempfile::tempdir;
@@ -10,6 +9,7 @@ use tempfile::tempdir;
 use crate::harness::{
     REFERENCE_RAYS, darkness, fails, fed, finish, listing, printed, refused, run, with_draft,
 };
+use crate::reference_rays::reference_rays;
 
 /// A row that `trace` printed.
 struct Row {
