@@ -1,4 +1,4 @@
-//! Tables' files made by hand: whole, and not what anybody generates.
+//! Table files made by hand: valid in form, with contents that no generator writes.
 
 use darkness::table::FixedBytes;
 use darkness::table::format::{MAGIC, VERSION};

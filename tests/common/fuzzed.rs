@@ -1,5 +1,6 @@
-//! What must hold of any bytes that somebody takes for a table, a scene, a range of frames or a list of rays: they are read or refused,
-//! and what is read can be worked with. Fuzzers run these on bytes of their own, tests on those that were kept.
+//! What must hold of any bytes that are read as a table, a scene, a range of frames or a list of rays: they are
+//! accepted or refused, and what is accepted can be used. Fuzzers run these functions on bytes of their own,
+//! `tests/files/corpora.rs` on the bytes that were kept.
 
 // Each fuzzing program takes what it needs.
 #![allow(dead_code)]
@@ -21,7 +22,8 @@ use darkness::scene::animation::FrameRange;
 use darkness::scene::{Animation, Scene, View};
 use darkness::table::{FixedBytes, FormatError, Memory, Spec, Table, generate};
 
-/// The bytes as a table's file: as they are, and with every checksum and length made right, so that what they guard is read.
+/// Reads the bytes as a table's file: as they are, and with all checksums and lengths corrected, so that the checks
+/// behind these are reached.
 pub(crate) fn table(bytes: &[u8]) {
     let mended = mended(bytes);
     let both: [&[u8]; 2] = [bytes, &mended];
@@ -34,7 +36,7 @@ pub(crate) fn table(bytes: &[u8]) {
     }
 }
 
-/// The bytes with every length and checksum of a table's file made to fit.
+/// Returns the bytes with all lengths and checksums of a table's file corrected.
 fn mended(bytes: &[u8]) -> Vec<u8> {
     let Some((preamble, rest)) = bytes.split_at_checked(METADATA_AT) else {
         return bytes.to_vec();
@@ -48,7 +50,7 @@ fn mended(bytes: &[u8]) -> Vec<u8> {
         .to_vec()
 }
 
-/// Rays, curves and frames from a table whose numbers may be anything finite: whatever they are, they come to an end.
+/// Follows rays and draws frames from a table whose numbers may be anything finite. All of it must come to an end.
 fn use_table<B: FixedBytes + Sync>(table: &Table<B>) {
     let lookup = table.lookup();
     for (u, slope) in RAYS {
@@ -62,7 +64,7 @@ fn use_table<B: FixedBytes + Sync>(table: &Table<B>) {
             })
         ));
     }
-    // Curves through noise have as many nodes as there may be, some seconds' work: for one table of many.
+    // Curves through noise get the largest number of nodes, which takes seconds: they are drawn for one table in 256.
     let sum = crc32fast::hash(table.bytes()) as usize;
     if sum.is_multiple_of(256) {
         let name = ["classic", "inside", "edge-on"][sum / 256 % 3];

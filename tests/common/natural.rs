@@ -1,5 +1,5 @@
-//! Exact arithmetic on the squares and cubes of floating-point numbers: signs that no rounding can turn, from nothing
-//! of the program's own code.
+//! Exact arithmetic on the squares and cubes of floating-point numbers. It gives signs that no rounding can change, and
+//! shares no code with the library.
 
 use std::cmp::Ordering;
 

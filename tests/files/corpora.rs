@@ -1,5 +1,5 @@
-//! Guards against the return of what fuzzers found, and against the loss of what they reached: every input that was
-//! kept is tried again.
+//! Guards against the return of what fuzzers found, and against losing what they reached: every input that was kept is
+//! tried again.
 
 use std::io::Read;
 use std::panic::catch_unwind;

@@ -1,4 +1,4 @@
-//! What is read from files: tables that are damaged, foreign or crafted, and any bytes at all.
+//! Reading files: tables that are damaged, foreign or crafted, and bytes of any kind.
 
 #[path = "../common/fuzzed.rs"]
 mod fuzzed;

@@ -1,5 +1,6 @@
-//! Guards against a table's file that is read although it is damaged, cut, foreign or of another version; against a
-//! write that leaves half a file or rubbish behind; and against bytes that depend on the machine's threads.
+//! Guards against a table file that is accepted although it is damaged, cut short, foreign or of another version;
+//! against a write that leaves half a file or other files behind; and against bytes that depend on the number of
+//! threads.
 
 use std::path::Path;
 
@@ -14,7 +15,7 @@ use crate::fuzzed::crafted::{
     write_u32,
 };
 
-/// Bytes seen through a reference: nothing is copied to ask about them.
+/// Borrowed bytes: checking them copies nothing.
 struct View<'a>(&'a [u8]);
 
 impl FixedBytes for View<'_> {}
@@ -37,7 +38,7 @@ fn problem(bytes: &[u8]) -> FormatError {
     }
 }
 
-/// What is wrong with bytes that may begin anywhere.
+/// What is wrong with bytes of any alignment.
 fn problem_anywhere(bytes: &[u8]) -> FormatError {
     problem(Aligned::new(bytes).as_ref())
 }
@@ -52,7 +53,7 @@ fn numbers_of(table: &Table<Memory>) -> &[u8] {
     &table.bytes()[header.next_multiple_of(64)..]
 }
 
-/// The draft table with its metadata changed and everything else made to fit.
+/// The draft table with changed metadata, and lengths and checksums that fit.
 fn with_metadata(change: impl FnOnce(&mut Metadata)) -> Aligned {
     let table = draft();
     let mut metadata = table.metadata().clone();
@@ -72,7 +73,7 @@ fn a_crafted_file_without_changes_equals_the_real_one() {
 fn every_changed_byte_is_refused() {
     let mut bytes = Aligned::new(draft().bytes());
     for at in 0..bytes.length {
-        // One bit, and all of them.
+        // One bit, and all bits.
         for change in [1 << (at % 8), 0xff] {
             bytes.bytes_mut()[at] ^= change;
             let problem = problem(bytes.as_ref());
@@ -162,7 +163,7 @@ fn a_file_of_another_version_is_refused_with_its_version() {
     for found in [0, VERSION + 1, 0x0100_0000, u32::MAX] {
         let mut bytes = Aligned::new(draft().bytes());
         write_u32(bytes.bytes_mut(), VERSION_AT, found);
-        // The preamble of another version may be laid out in another way: with and without a checksum that fits.
+        // Another version may have another preamble: with and without a valid checksum.
         for mended in [false, true] {
             if mended {
                 mend_preamble(bytes.bytes_mut());
@@ -178,7 +179,7 @@ fn a_file_of_another_version_is_refused_with_its_version() {
     }
 }
 
-/// What a machine of the other byte order, or a tool that swaps words, makes of a table.
+/// A table as a machine of the other byte order would write it, or a tool that swaps words.
 #[test]
 fn a_file_with_swapped_bytes_is_refused_as_such() {
     let table = draft();
@@ -209,7 +210,7 @@ fn misaligned_bytes_are_not_read_in_place() {
 
 type Change = fn(&mut Metadata);
 
-/// Metadata that nobody's `generate` writes, under checksums that fit.
+/// Metadata that `generate` never writes, with checksums that fit.
 #[test]
 fn metadata_that_make_no_sense_are_refused() {
     let changes: [(&str, Change); 15] = [
@@ -264,8 +265,8 @@ fn metadata_with_trailing_bytes_and_numbers_that_are_not_finite_are_refused() {
     }
 }
 
-/// Every length there is, made absurd under checksums that fit: refused, and no memory asked for it. A request for
-/// one of the lengths of 2^44 bytes and more would end this process; one of 2^37 shows as address space.
+/// Every length in the file, made absurd with checksums that fit, is refused, and no memory is allocated for it. An
+/// allocation of 2^44 bytes or more would end this process; one of 2^37 bytes would show as address space.
 #[test]
 fn absurd_lengths_are_refused_before_memory_is_allocated() {
     let table = draft();
@@ -301,7 +302,7 @@ fn absurd_lengths_are_refused_before_memory_is_allocated() {
             "{length} bytes of metadata"
         );
     }
-    // Metadata begins with the length of a text: in bincode's form 253 stands before eight bytes of it.
+    // Metadata begin with the length of a text: bincode writes 253 and then eight bytes.
     for length in [1_u64 << 37, 1 << 44, u64::MAX] {
         let mut metadata = vec![253];
         metadata.extend(length.to_le_bytes());
@@ -324,12 +325,12 @@ fn absurd_lengths_are_refused_before_memory_is_allocated() {
         ));
     }
     if let Some(peak) = peak_address_space() {
-        // The threads of a test program reserve some hundred megabytes.
+        // The threads of a test binary reserve some hundred megabytes.
         assert!(peak < 1 << 36, "{peak} bytes of address space");
     }
 }
 
-/// The most bytes of address space this process ever had, where the system tells.
+/// The largest address space that this process ever had, in bytes, if the system tells it.
 fn peak_address_space() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmPeak:"))?;
@@ -360,7 +361,7 @@ fn a_saved_table_opens_again_and_leaves_no_other_file() {
     assert_eq!(opened.bytes(), table.bytes());
 }
 
-/// A longer file is not left with its old end; and who has the old one open keeps it.
+/// A longer file does not keep its old end, and a process that has the old file open keeps it whole.
 #[test]
 fn saving_replaces_a_file_as_a_whole() {
     let folder = tempfile::tempdir().unwrap();
@@ -380,7 +381,7 @@ fn saving_replaces_a_file_as_a_whole() {
     assert_eq!(names(folder.path()), ["some.table"]);
 }
 
-/// Compared with a plain new file's, so that whatever umask the tests run under is the one expected.
+/// The mode is compared with that of a plain new file, so that any umask is right.
 #[cfg(unix)]
 #[test]
 fn a_saved_table_has_the_mode_of_any_new_file() {
@@ -397,7 +398,7 @@ fn a_saved_table_has_the_mode_of_any_new_file() {
 fn a_save_that_fails_names_the_file_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let table = draft();
-    // A folder stands where the file should go, or a file where the folder should be.
+    // There is a folder in place of the file, or a file in place of the folder.
     let taken = folder.path().join("taken.table");
     std::fs::create_dir(&taken).unwrap();
     std::fs::write(taken.join("inside"), "").unwrap();
@@ -437,7 +438,7 @@ fn an_error_names_the_file_and_the_command_that_mends_it() {
         assert!(text.contains(&remedy), "{text}");
         assert!(!text.contains("--force"), "nothing to overwrite: {text}");
     }
-    // Where the program looks by itself no -o is needed.
+    // The default place needs no -o.
     for name in Spec::NAMES {
         let path = default_path(name);
         assert_eq!(path, Path::new("tables").join(format!("{name}.table")));
@@ -465,7 +466,7 @@ fn an_error_names_the_file_and_the_command_that_mends_it() {
     );
 }
 
-/// Also with an odd grid, so that the rows do not share out evenly.
+/// Also with an odd grid, whose rows do not divide evenly among threads.
 #[test]
 fn a_tables_bytes_depend_on_its_specification_alone() {
     let mut odd = Spec::named("draft").unwrap();
@@ -492,7 +493,7 @@ fn a_tables_bytes_depend_on_its_specification_alone() {
     }
 }
 
-/// A specification that no table can have makes none.
+/// A specification that no table can have gives an error.
 #[test]
 fn a_grid_that_no_table_can_have_is_refused() {
     let draft = || Spec::named("draft").unwrap();

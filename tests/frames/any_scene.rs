@@ -1,4 +1,4 @@
-//! Scenes of every kind, at random.
+//! Random scenes of every kind.
 
 use darkness::scene::Scene;
 use glam::DVec3;

@@ -1,4 +1,4 @@
-//! Guards against frames that depend on what is drawn beside them, on how many threads draw, and on where a worker begins.
+//! Guards against frames that depend on what else is drawn, on the number of threads, or on where a worker begins.
 
 use core::sync::atomic::{AtomicUsize, Ordering};
 use std::collections::BTreeMap;
@@ -131,8 +131,8 @@ fn a_scene_that_does_not_move_is_the_picture() {
     assert!(frame[&1] == pixelwise::render(&scene, &view, &Exact, &|| ()).unwrap());
 }
 
-/// Guards against a failure that is lost, or that a whole batch is drawn after, and against one that stops the others where it
-/// should not.
+/// Guards against a failure that is lost, or that a whole batch is drawn after, and against one that stops the others
+/// where it should not.
 #[test]
 fn a_failure_ends_the_batch_if_it_is_told_to() {
     let orbit = animation("orbit", 400);

@@ -78,7 +78,8 @@ fn both_truths_agree() {
             .iter()
             .fold(0.0, |most: f64, difference| most.max(difference.abs()));
         let mean = differences.iter().sum::<f64>() / differences.len() as f64;
-        // Measured: 0.0064, 3.1e-6. What is left is the lattice's: on lattices of a fourth of the points it is 2.5 times that.
+        // Measured: 0.0064, 3.1e-6. What is left is the lattice's: on lattices of a fourth of the points it is 2.5
+        // times that.
         assert!(
             worst < 0.01 && mean.abs() < 1e-5,
             "{name}: {worst}, {mean:e}"
@@ -163,8 +164,8 @@ fn random_scenes() {
 
 /// Guards against an edge that is straightened where it bends: circles of all radii, seen from the axis.
 ///
-/// There `g = z − κ s` is a cone, straight along the radius: its tangent plane at the pixel's centre is off by `t²/2R` at
-/// a distance t aside, R being the centre's radius, which gives an area of `∫ t²/2R dt = l³/24R` over a chord of the
+/// There `g = z − κ s` is a cone, straight along the radius: its tangent plane at the pixel's centre is off by `t²/2R`
+/// at a distance t aside, R being the centre's radius, which gives an area of `∫ t²/2R dt = l³/24R` over a chord of the
 /// length l ≤ √2, if it is in the middle of the pixel.
 #[test]
 fn circles_are_as_wrong_as_their_tangents_are() {

@@ -277,9 +277,9 @@ fn left_and_right_are_alike_to_the_byte() {
 
 /// Guards against the same between top and bottom; from within the disk's plane what is above it is what is below.
 ///
-/// A ray above meets the plane at the angles `kπ` of one quarter turn's curves, the ray below it at those of the other's
-/// end: two splines of the same curve, each of which may be off by the scene's tolerance. So a share differs by two
-/// thousandths of a pixel times √2 at most, which is less than a grey.
+/// A ray above meets the plane at the angles `kπ` of one quarter turn's curves, the ray below it at those of the
+/// other's end: two splines of the same curve, each of which may be off by the scene's tolerance. So a share differs by
+/// two thousandths of a pixel times √2 at most, which is less than a grey.
 #[test]
 fn top_and_bottom_are_alike_to_one_grey_from_within_the_disks_plane() {
     let (mut unlike, mut greys) = (0, 0);

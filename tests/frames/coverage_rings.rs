@@ -70,8 +70,8 @@ impl Kept {
 /// A share that is none.
 const NOTHING: f64 = 1e-9;
 
-/// A narrow disk, `thickness` pixels wide where it is seen from above, from `radius` away and the angle `rise` above its
-/// plane; the shadow's radius is a quarter of the picture's height.
+/// A narrow disk, `thickness` pixels wide where it is seen from above, from `radius` away and the angle `rise` above
+/// its plane; the shadow's radius is a quarter of the picture's height.
 fn thread(radius: f64, rise: f64, thickness: f64, (width, height): (u32, u32)) -> String {
     let sine = (6.75 * (1.0 - 1.0 / radius)).sqrt() / radius;
     let pixel = 4.0 * sine / f64::from(height);
@@ -98,19 +98,20 @@ fn threads_keep_their_light_and_do_not_break() {
                     let name = format!(
                         "r = {radius}, {rise:.2} above, {thickness} thick, {size:?}: {kept:?}"
                     );
-                    // From above, where every pixel has several greys; else the light of all that is below half a grey is
-                    // lost, which is all of the rings of a thread of 1/50.
+                    // From above, where every pixel has several greys; else the light of all that is below half a grey
+                    // is lost, which is all of the rings of a thread of 1/50.
                     if kept.peak > 0.25 {
                         assert!((kept.light / kept.known - 1.0).abs() < 0.01, "{name}");
                     }
-                    // To a percent, and as much as rounding does to some hundred pixels half of which are off by a grey.
+                    // To a percent, and as much as rounding does to some hundred pixels half of which are off by a
+                    // grey.
                     assert!(
                         (kept.light - kept.in_greys).abs() < 0.01 * kept.known + 5.0 * LEVEL,
                         "{name}"
                     );
-                    // A share of a grey in a pixel's corner may become less than half of one: with R = 30 a tangent is off
-                    // by `l³/24R`, 0.004 at most. At the ends of an ellipse that is flatter than a pixel the edges turn
-                    // about within one. Measured: 0.0042 and 0.0060.
+                    // A share of a grey in a pixel's corner may become less than half of one: with R = 30 a tangent is
+                    // off by `l³/24R`, 0.004 at most. At the ends of an ellipse that is flatter than a pixel the edges
+                    // turn about within one. Measured: 0.0042 and 0.0060.
                     let flat = rise == 0.02;
                     assert!(kept.gone <= if flat { 2.0 } else { 1.25 } * LEVEL, "{name}");
                     assert!(kept.extra == 0.0, "{name}");
@@ -163,8 +164,8 @@ fn disks_below_a_pixel_keep_their_light() {
                 let kept = Kept::new(&shares, &picture.swept(&picture.orders()));
                 let name = format!("{rise:.3} above, {size} pixels, {focus:?}: {kept:?}");
                 assert!(kept.extra == 0.0, "{name}");
-                // Tangents make a closed edge larger by `2π/24` of a pixel; what bends more than they may is cut up, down
-                // to a sixteenth of a side, and loses or wins a part of such a square. Measured: 0.28 and 0.0078.
+                // Tangents make a closed edge larger by `2π/24` of a pixel; what bends more than they may is cut up,
+                // down to a sixteenth of a side, and loses or wins a part of such a square. Measured: 0.28 and 0.0078.
                 let allowed = if size > 1.0 { 0.3 } else { 0.01 };
                 assert!((kept.light - kept.known).abs() < allowed, "{name}");
                 // Measured: 0.0201, of tangents; 0.0078 where all of the disk is in four pixels.

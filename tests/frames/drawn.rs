@@ -1,5 +1,5 @@
-//! Frames as a user gets them: drawn by the program itself, which follows each pixel's ray by itself where it finds that
-//! its curves do not reach a view.
+//! Frames as a user gets them: the program draws them, and evaluates each pixel's own ray where its curves are not
+//! accurate enough for a view.
 
 use std::fs;
 

@@ -1,6 +1,6 @@
-//! Guards against a frame that is wrong where the camera, the disk or the lens is at an end of what is allowed: whatever
-//! the program draws, against each pixel's own exact ray. A pixel may differ where an edge is within a thousandth of a
-//! pixel of its centre, and nowhere else.
+//! Guards against wrong frames where the camera, the disk or the lens is at a limit of what is allowed. Each frame of
+//! the program is compared with each pixel's own exact ray. A pixel may differ only where an edge is within a
+//! thousandth of a pixel of its centre.
 
 use darkness::orbit::exact::Exact;
 use darkness::render::mask::WHITE;

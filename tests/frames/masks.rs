@@ -1,5 +1,5 @@
-//! Guards against a wrong pixel: frames by curves and by pixels against the reference's masks, and the three methods
-//! against each other on every scene there is.
+//! Guards against a wrong pixel: frames by curves and by pixels are compared with the reference masks, and the three
+//! methods with each other on every scene.
 
 use std::path::{Path, PathBuf};
 

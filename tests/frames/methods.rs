@@ -1,4 +1,4 @@
-//! Frames by each way there is, and what two of them may differ by.
+//! Frames by each method, and how much two of them may differ.
 
 use core::f64::consts::PI;
 

@@ -1,5 +1,6 @@
-//! Guards against curves that are worse than they promise, and against a promise that is padded: edges against their
-//! exact places over random scenes, and choices for a tolerance eight times as large, which must fail somewhere.
+//! Guards against curves that are less accurate than they promise, and against more work than the promise needs. Edges
+//! are compared with their exact places over random scenes. Choices for a tolerance eight times as large must fail
+//! somewhere.
 
 use darkness::isoradial::{Edge, Isoradials, Sight, height_at};
 use darkness::orbit::exact::Exact;

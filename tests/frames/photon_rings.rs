@@ -1,6 +1,6 @@
-//! Guards against photon rings that are only right while they are thinner than a pixel: the camera is zoomed in until
-//! the image of order 2, 3, 4 or 5 is 20 pixels thick, and both its edges are located along a line across it, by the
-//! curves and by each point's own exact ray, which is itself held against quadrature.
+//! Guards against photon rings that are only right while they are thinner than a pixel. The camera is zoomed in until
+//! the image of order 2, 3, 4 or 5 is 20 pixels thick. Both of its edges are located along a line across it, by the
+//! curves and by each point's own exact ray; the exact ray is checked against quadrature.
 
 use core::f64::consts::PI;
 

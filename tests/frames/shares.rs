@@ -1,9 +1,10 @@
 //! The share of each pixel that the disk covers, without the renderer: from the curves alone, in two ways that have
 //! nothing in common with it or with each other.
 //!
-//! *Swept*: the picture is cut into wedges about the hole's direction, on whose sides the curves say at which κ the disk
-//! begins and ends. The union over the orders is one of intervals there; between two sides it is made of quadrangles,
-//! which are cut at the pixels' sides. Wedges are halved until the edges between are chords to [`SAGITTA`].
+//! *Swept*: the picture is cut into wedges about the hole's direction, on whose sides the curves say at which κ the
+//! disk begins and ends. The union over the orders is one of intervals there; between two sides it is made of
+//! quadrangles, which are cut at the pixels' sides. Wedges are halved until the edges between are chords to
+//! [`SAGITTA`].
 //!
 //! *Counted*: a pixel's points on a lattice, each asked by itself.
 
@@ -152,7 +153,8 @@ impl Picture {
         ]
     }
 
-    /// κ of the outer and the inner edge in a direction across the line to the hole, that has the part `cosine` along â.
+    /// κ of the outer and the inner edge in a direction across the line to the hole, that has the part `cosine` along
+    /// â.
     pub(crate) fn edges(&self, order: u32, cosine: f64) -> Option<[f64; 2]> {
         let first = libm::atan2(self.view.n_p().abs(), self.view.plane_slope() * cosine);
         let kappa = |edge| Some(self.curves.critical() + self.curves.height(order, edge, first)?);

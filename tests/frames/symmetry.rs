@@ -1,6 +1,6 @@
-//! Guards against a picture that depends on where the axes point, on which side is left, or on a place that only the
-//! arithmetic finds special: the photon sphere, the disk's plane and axis, the horizon, infinity, the line to the
-//! hole.
+//! Guards against a picture that depends on the direction of the axes or on which side is left, and against errors at
+//! the places that are special in the arithmetic only: the photon sphere, the disk's plane and axis, the horizon,
+//! infinity, and the line to the hole.
 
 use darkness::orbit::exact::Exact;
 use darkness::orbit::integrate::{Adaptive, FixedStep, Scheme};
@@ -543,8 +543,8 @@ proptest! {
             let slope = if event.kind == EventKind::Inbound { point.slope } else { -point.slope };
             let rest = Exact.follow(Ray::new(u, slope).unwrap(), &[]).unwrap();
             prop_assert_eq!(rest[0].kind, end.kind);
-            // e² is off by 8 ε, Δ > 1e-3 e² by 8e3 ε: as many ε of angle. The slope, by 8 ε e²/slope: over u″ = u(1 − 1.5 u) > 0.03 (or
-            // far from any turning point) less than 4e5 ε.
+            // e² is off by 8 ε, Δ > 1e-3 e² by 8e3 ε: as many ε of angle. The slope, by 8 ε e²/slope: over u″ = u(1 −
+            // 1.5 u) > 0.03 (or far from any turning point) less than 4e5 ε.
             let allowed = 3e-12 + 4.1e5 * f64::EPSILON;
             let difference = (event.angle + rest[0].angle - end.angle).abs();
             prop_assert!(difference <= allowed, "{event:?}: {difference:e}");

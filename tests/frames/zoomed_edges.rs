@@ -1,5 +1,5 @@
-//! Guards against curves that say they are right to a thousandth of a pixel and are not: through lenses of 1° to 1e-4°
-//! an edge of the disk is located by the curves of each table and by exact rays.
+//! Guards against curves that claim to be right to a thousandth of a pixel and are not. Lenses of 1° to 1e-4° look at
+//! an edge of the disk; it is located by the curves of each table and by exact rays.
 
 use darkness::scene::{DEFAULT_TOLERANCE, Scene, View};
 use glam::DVec3;

@@ -1,4 +1,4 @@
-//! Guards against frames that take memory each: once warm, none does.
+//! Guards against memory that is allocated for each frame: once warm, no frame allocates.
 #![expect(unsafe_code, reason = "an allocator that counts")]
 
 use core::alloc::{GlobalAlloc, Layout};

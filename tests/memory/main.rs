@@ -1,4 +1,4 @@
-//! Memory of a whole process, which no other test may share.
+//! Memory use, measured for the whole process: this binary has one test, so that no other runs beside it.
 
 #[path = "../common/tables.rs"]
 mod tables;

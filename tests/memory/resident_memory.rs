@@ -1,4 +1,4 @@
-//! Guards against a renderer that needs more memory than its frame and its table.
+//! Guards against a renderer that needs much more memory than its frame and its table.
 #![cfg(target_os = "linux")]
 
 use std::fs;

@@ -1,5 +1,5 @@
-//! Guards against methods that agree with each other and are wrong together: swept angles from infinity against closed
-//! forms and series in print, each with the order in which it converges, and against quadrature.
+//! Guards against methods that agree with each other and are all wrong. Swept angles from infinity are compared with
+//! quadrature, with closed forms and with published series, each in the order in which it converges.
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -163,8 +163,8 @@ fn weak_deflection_converges_as_the_series_of_keeton_and_petters() {
             let allowed = rest + tolerance + 8.0 * f64::EPSILON;
             let error = (remainder(b) - fourth).abs();
             assert!(error <= allowed, "{name}, b = {b}: off by {error:e}");
-            // Where the method's tolerance is no more than a hundredth of it, the remainder is seen to fall with the fourth
-            // power, and with the share of the next term still to come.
+            // Where the method's tolerance is no more than a hundredth of it, the remainder is seen to fall with the
+            // fourth power, and with the share of the next term still to come.
             if fourth / 16.0 >= 100.0 * tolerance {
                 let order = libm::log2(remainder(b) / remainder(2.0 * b));
                 let upper = 4.0 + 1.5 * rest / fourth + 0.03;
@@ -229,7 +229,8 @@ fn strong_deflection_converges_in_the_orders_of_bozza_and_of_iyer_and_petters() 
             };
             for (order, compared) in compared.iter_mut().enumerate() {
                 let (error, halved) = (error_of(share, order), error_of(0.5 * share, order));
-                // Of each the method's tolerance, and the rounding of numbers of up to 30, is to be less than a hundredth.
+                // Of each the method's tolerance, and the rounding of numbers of up to 30, is to be less than a
+                // hundredth.
                 if halved.abs() < 100.0 * (tolerance + 32.0 * f64::EPSILON) {
                     continue;
                 }

@@ -1,6 +1,6 @@
-//! Guards against a ray whose numbers are the worst there are: next to critical down to the last representable bit,
-//! radial, tangential. Fates are judged in whole numbers, angles by quadrature: neither shares a line with the
-//! methods under test.
+//! Guards against errors for the most difficult rays: next to critical down to the last representable bit, radial,
+//! tangential. Fates are decided in whole numbers and angles by quadrature; neither shares code with the methods under
+//! test.
 
 use darkness::orbit::exact::Exact;
 use darkness::orbit::integrate::{Adaptive, FixedStep, Scheme};

@@ -1,4 +1,4 @@
-//! The reference rays, each with all its events.
+//! The reference rays, grouped by ray.
 
 use crate::reference_rays::{ReferenceRay, reference_rays};
 

@@ -1,7 +1,7 @@
-//! Guards against a ray whose turning point is a disk's edge, or all but: a crossing without its partner, an angle that
-//! is no number, one that is off by more than what the ray's own digits leave open. Between the two crossings of a
-//! radius that is a depth d beyond lies an angle `2 √(2d/|ü|)`, `ü = u(1.5 u − 1)`, so half of all digits of d are
-//! lost; d itself is known here in whole numbers.
+//! Guards against errors for a ray whose turning point is at a disk's edge, or nearly: a crossing without its partner,
+//! an angle that is not a number, or one that is off by more than the ray's own digits leave open. If a ray turns at a
+//! depth d beyond a radius, the angle between its two crossings of it is `2 √(2d/|ü|)`, `ü = u(1.5 u − 1)`, so half of
+//! all digits of d are lost. The tests compute d in whole numbers.
 
 use darkness::orbit::exact::Exact;
 use darkness::orbit::integrate::Adaptive;

@@ -1,5 +1,5 @@
-//! Guards against an integrator that loses a crossing, tells a ray's end wrongly, or is less accurate than it says:
-//! every event of every reference ray, in order.
+//! Guards against an integrator that loses a crossing, gets a ray's end wrong, or is less accurate than it claims:
+//! every event of every reference ray is compared, in order.
 
 use darkness::orbit::integrate::{Adaptive, FixedStep, Scheme};
 use darkness::orbit::{Orbits, Ray};

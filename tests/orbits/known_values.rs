@@ -1,4 +1,4 @@
-//! Values in print.
+//! Published values, from `tests/reference/known_values.csv`.
 
 /// One row of `tests/reference/known_values.csv`.
 #[derive(Debug, Clone)]

@@ -1,5 +1,5 @@
-//! The rays' orbits: swept angles by the exact method, by integration and from tables, against reference values, closed
-//! forms, series in print, quadrature, and each other.
+//! Orbits of rays: swept angles by the exact method, by integration and from tables, compared with reference values,
+//! closed forms, published series, quadrature, and each other.
 
 #[path = "../common/natural.rs"]
 mod natural;

@@ -1,5 +1,6 @@
-//! Guards against a claim that is no longer true: next to the critical ray plain steps misjudge whether a ray falls in,
-//! where the table does not. So does adaptive integration at its tolerance, beyond the 10 radians that it promises.
+//! Guards against a claim that is no longer true: next to the critical ray, steps of fixed size misjudge whether a ray
+//! falls in, and the table does not. Adaptive integration fails too, beyond the 10 radians for which it promises its
+//! tolerance.
 
 use darkness::orbit::integrate::{Adaptive, FixedStep, Scheme};
 use darkness::orbit::{EventKind, Fate, Orbits, Ray};

@@ -1,6 +1,6 @@
-//! Guards against a method that loses an event, invents one, tells a ray's fate wrongly or sweeps a wrong angle: the
-//! exact method and the three tables against the reference's rays, against each other everywhere else, against the
-//! integrated equation, and against figures in print.
+//! Guards against a method that loses an event, invents one, gets a ray's fate wrong or sweeps a wrong angle. The exact
+//! method and the three tables are compared with the reference rays, with each other everywhere else, with the
+//! integrated equation, and with published figures.
 
 use core::f64::consts::{FRAC_PI_2, PI};
 use darkness::isoradial::{Isoradials, Sight};

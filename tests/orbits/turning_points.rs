@@ -1,5 +1,5 @@
-//! Guards against a turning point that is missed, invented or misplaced: every method against the cubic's roots and
-//! against each other.
+//! Guards against a turning point that is missed, invented or misplaced: every method is compared with the cubic's
+//! roots and with the others.
 
 use darkness::orbit::exact::Exact;
 use darkness::orbit::integrate::{Adaptive, FixedStep, Scheme};

@@ -1,4 +1,5 @@
-//! Guards against animations that are drawn otherwise than they are asked for, go on with what is wrong, or tell it badly.
+//! Guards against animations that are drawn otherwise than asked for, that go on after an error, or whose errors do not
+//! say what is wrong.
 #![cfg(unix)]
 
 use std::collections::BTreeMap;
@@ -63,7 +64,7 @@ fn frames_are_numbered_files_that_record_what_they_were_made_of() {
     let (depth, of_hard) = texts(&hard["007.png"]);
     assert_eq!((depth, &*of_hard["darkness:frame"]), (1, "7"));
     assert_ne!(of_hard["darkness:scene"], of_smooth["darkness:scene"]);
-    // What `sha256sum` says of the table's file.
+    // The output of `sha256sum` for the table's file.
     let sums = Command::new("sha256sum")
         .arg(here.join("tables/draft.table"))
         .output();
@@ -74,7 +75,7 @@ fn frames_are_numbered_files_that_record_what_they_were_made_of() {
             "{sum} {of_smooth:?}"
         );
     }
-    // Hard and smooth frames are of one place.
+    // Hard and smooth frames show the same camera.
     let pixels = |file: &[u8]| image::load_from_memory(file).unwrap().into_luma8();
     let (smooth, hard) = (pixels(&smooth["f_0007.png"]), pixels(&hard["007.png"]));
     let apart = smooth
@@ -191,7 +192,7 @@ fn a_film_consists_of_its_header_and_its_frames() {
 fn an_invalid_frame_does_not_affect_the_others() {
     let folder = with_animation(101);
     let here = folder.path();
-    // The camera comes to its focus at frame 51, the middle one.
+    // The camera reaches its focus at frame 51, the middle one.
     let toml = fs::read_to_string(here.join("small.toml")).unwrap();
     let key = |frame: u32, focus: &str| {
         format!("[[animation.keyframe]]\nframe = {frame}\nfocus = {focus}\n")
@@ -308,7 +309,7 @@ fn a_dry_run_lists_frames_and_files_and_draws_nothing() {
         "1\tto draw\tout/f_0001.png\n2\tfinished\tout/f_0002.png\n3\tto draw\tout/f_0003.png\n"
     );
     assert!(files(&here.join("out")) == before);
-    // Not even a table is made.
+    // No table is made either.
     let other = tempdir().unwrap();
     let (list, _) = done(
         other.path(),
@@ -362,7 +363,7 @@ fn progress_is_reported_in_the_form_that_is_asked_for() {
         .concat();
         done(here, &args).1
     };
-    // A second is not over: nothing but the last line.
+    // Within the first second only the last line is printed.
     let openjd = stderr(&["--progress", "openjd"]);
     let lines: Vec<_> = openjd.lines().collect();
     assert!(lines.contains(&"openjd_progress: 100.0"), "{openjd}");

@@ -1,5 +1,5 @@
-//! Guards against a chart that leaves a method out, hides its failures, or writes where it should not. What it measures
-//! are the machine's times: none of them is tested, only what the errors must be.
+//! Guards against a chart that leaves out a method, hides its failures, or writes where it should not. The times that a
+//! chart measures are the machine's and are not tested; its errors are.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -46,7 +46,7 @@ impl<'a> Row<'a> {
         self.fields[1]
     }
 
-    /// The value of one of the setting's words.
+    /// The value of one of the setting's `key=value` words.
     fn word(&self, name: &str) -> Option<&'a str> {
         let words = self.fields[2].split(' ');
         words
@@ -67,7 +67,7 @@ impl<'a> Row<'a> {
     }
 }
 
-/// The file's rows, after its two first lines are seen to be what they should.
+/// The file's rows, after a check of its first two lines.
 fn rows(csv: &str) -> Vec<Row<'_>> {
     let mut lines = csv.lines();
     let comment = lines.next().unwrap();
@@ -84,7 +84,7 @@ fn rows(csv: &str) -> Vec<Row<'_>> {
         .collect()
 }
 
-/// Panics where `text` is not one element with all its tags closed in order and its attributes quoted.
+/// Panics unless `text` is one element with all its tags closed in order and its attributes quoted.
 fn check_xml(text: &str) {
     let mut open = Vec::new();
     let mut rest = text;
@@ -286,7 +286,7 @@ fn nothing_is_measured_for_files_that_cannot_be_written() {
             2,
             &["-o and --csv"],
         ),
-        // A link that leads nowhere yet.
+        // A link to a file that does not exist yet.
         #[cfg(unix)]
         (
             &["-o", "there/link.svg", "--csv", "x.csv"],

@@ -1,4 +1,4 @@
-//! Guards against batches that write over what is good, lose what is finished, or cannot go on after whatever stopped them.
+//! Guards against batches that overwrite what is good, lose what is finished, or cannot continue after an interruption.
 #![cfg(unix)]
 
 use std::fs;
@@ -31,7 +31,7 @@ fn a_rerun_draws_frames_that_are_missing_damaged_or_of_another_scene_or_table() 
     fs::write(out.join("f_0009.png"), "").unwrap();
     assert!(drawn(&[]).contains("5 frames of"));
     assert!(files(&out) == first);
-    // Another table is another origin, though here the pixels are the same.
+    // Another table counts as another origin, although the pixels are the same here.
     done(here, &["table", "standard", "-o", "b.table"]);
     assert!(drawn(&["--table", "b.table", "--frames", "1-4"]).contains("4 frames of"));
     assert!(drawn(&["--overwrite"]).contains("10 frames of"));
@@ -209,7 +209,7 @@ fn a_file_that_is_read_is_not_overwritten_under_any_name() {
     ];
     refused(here, &args, 2, &["table that is read"]);
     assert!(files(here) == before);
-    // One frame's name is a link to the scene, another's to the table: these frames fail, the others do not.
+    // One frame's name is a link to the scene, another's a link to the table: only these two frames fail.
     fs::create_dir(here.join("out")).unwrap();
     std::os::unix::fs::symlink("../small.toml", here.join("out/f_0002.png")).unwrap();
     std::os::unix::fs::symlink("../my.table", here.join("out/f_0004.png")).unwrap();
@@ -244,7 +244,7 @@ fn a_file_that_is_read_is_not_overwritten_under_any_name() {
     );
 }
 
-/// Guards against a wait for a pipe's other end, and for the end of what has none.
+/// Guards against waiting for a pipe's other end, and for the end of a device that has none.
 #[test]
 fn a_pipe_or_device_in_place_of_a_frame_fails_that_frame_only() {
     let folder = with_animation(6);
@@ -266,7 +266,7 @@ fn a_pipe_or_device_in_place_of_a_frame_fails_that_frame_only() {
     done(here, &["render", "small.toml", "-o", PATTERN, "--dry-run"]);
 }
 
-/// The program, drawing frames in the background.
+/// Starts the program, which draws frames in the background.
 fn start(folder: &Path, out: &str) -> Child {
     darkness(
         folder,
@@ -278,7 +278,7 @@ fn start(folder: &Path, out: &str) -> Child {
     .unwrap()
 }
 
-/// Waits until some frames are there.
+/// Waits until some frames exist.
 fn wait_for(folder: &Path, frames: usize) {
     let start = Instant::now();
     let present = || fs::read_dir(folder).map_or(0, Iterator::count);
@@ -300,7 +300,7 @@ fn a_batch_killed_at_any_moment_and_run_again_gives_the_same_files() {
     let mut kills = 0;
     for moment in 0..20_u32 {
         let mut child = start(here, PATTERN);
-        // From before the first frame to after the last ones.
+        // At moments from before the first frame to after the last.
         std::thread::sleep(time * moment / 20);
         if child.try_wait().unwrap().is_none() {
             kills += 1;
@@ -349,9 +349,9 @@ fn a_first_signal_finishes_the_frames_begun_and_a_rerun_the_rest() {
         assert!(left.len() < 3000);
         assert!(left.iter().all(|(name, file)| !name.starts_with('.') && image::load_from_memory(file).is_ok()));
     }
-    // A film that is not whole is not kept.
+    // An unfinished film is not kept.
     let child = start(here, "film.y4m");
-    // Its file is begun when signals are waited for.
+    // Its file appears once the program handles signals.
     let begun = || files(here).keys().any(|name| name.starts_with(".film.y4m"));
     let start = Instant::now();
     while !begun() {
@@ -368,7 +368,7 @@ fn a_first_signal_finishes_the_frames_begun_and_a_rerun_the_rest() {
     assert_eq!(left, ["out", "small.toml", "tables"]);
 }
 
-/// Guards against a Ctrl-C that ends what it is not meant for: shells have what scripts run in the background ignore it.
+/// Guards against a Ctrl-C that ends a background job: shells start those with the signal ignored.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_signal_that_is_ignored_from_the_start_is_ignored() {

@@ -1,5 +1,5 @@
-//! Guards against bytes that depend on the number of threads or on the processor: the program is run with one thread,
-//! with two, and with the C library kept from its fused and wide code paths.
+//! Guards against bytes that depend on the number of threads or on the processor. The program is run with one thread,
+//! with two, and with the C library kept from its code for FMA and AVX2.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use tempfile::tempdir;
 
 use crate::harness::{REFERENCE_RAYS, darkness, finish};
 
-/// Ways to run the program that must not matter.
+/// Ways to run the program that must give the same bytes: threads, and settings of the C library.
 const WAYS: [(&str, Option<&str>); 3] = [
     ("1", None),
     ("2", None),
@@ -30,7 +30,7 @@ fn run(folder: &Path, (threads, tunables): (&str, Option<&str>), args: &[&str]) 
     finish(&mut command).0
 }
 
-/// Runs the program in all the ways, and returns the bytes that each of them prints.
+/// Runs the program in every way, asserts that the output is the same, and returns it.
 fn same_bytes(folder: &Path, args: &[&str]) -> Vec<u8> {
     let [first, others @ ..] = WAYS;
     let expected = run(folder, first, args);
@@ -66,7 +66,7 @@ fn tables_pictures_and_angles_do_not_depend_on_threads_or_processor() {
             assert!(picture.starts_with(b"\x89PNG"));
         }
     }
-    // Frames whose cameras are found by sines, cosines and arcs.
+    // Frames whose cameras are computed with sines, cosines and arcs.
     for scene in ["orbit", "approach", "tilt"] {
         let options = [scene, "--table", "a.table", "--frames", "17-180x41"];
         let film = same_bytes(here, &[&draw[..], &options, &["--format", "raw"]].concat());

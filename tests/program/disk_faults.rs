@@ -1,5 +1,5 @@
-//! Guards against a disk that is full, closed or rationed, for whatever the program writes: a sentence with the file's name, exit 1,
-//! no part of a file, and no signal.
+//! Guards against a disk that is full, read-only or limited by a quota, for everything that the program writes. It must
+//! exit with 1 and a sentence that names the file, and leave no partial file; no signal may end it.
 #![cfg(unix)]
 
 use std::fs::{self, Permissions};
@@ -11,7 +11,7 @@ use std::process::{Command, Output};
 use crate::harness::{PROGRAM, done, files, with_animation};
 use crate::tools;
 
-/// What writes a file of each kind into the folder `out`; whatever is in `{}` is the program.
+/// Commands that write a file of each kind into the folder `out`, where `{}` stands for the program.
 const WRITERS: [(&str, &str); 8] = [
     ("t.table", "{} table draft -o out/t.table"),
     ("deep", "{} table draft -o out/deep/t.table"),
@@ -58,7 +58,7 @@ fn shell(here: &Path, line: &str) -> (Output, String) {
     told(&mut command)
 }
 
-/// How a command ended, and what it said.
+/// Runs a command, and returns its output and its standard error as text.
 fn told(command: &mut Command) -> (Output, String) {
     let output = command.output().unwrap();
     let said = String::from_utf8(output.stderr.clone()).unwrap();
@@ -84,7 +84,7 @@ fn failed(line: &str, (output, said): &(Output, String), names: &str) {
     assert!(!said.contains("panicked"), "{said}");
 }
 
-/// What is in `out`, hidden files too.
+/// The names of the files in `out`, hidden ones too.
 fn left(here: &Path) -> Vec<String> {
     files(&here.join("out")).into_keys().collect()
 }
@@ -101,7 +101,7 @@ fn a_quota_is_reported_and_leaves_no_partial_file() {
         let _ = fs::remove_dir(here.join("out/deep"));
         assert!(left(here).is_empty(), "{line}: {:?}", left(here));
     }
-    // What is printed is in the file up to the quota, as with any program.
+    // As with any program, printed output fills the file up to the quota.
     for line in [
         "{} trace rays.csv > out/r",
         "{} job slurm small.toml > out/j",
@@ -111,7 +111,7 @@ fn a_quota_is_reported_and_leaves_no_partial_file() {
     }
 }
 
-/// On a disk of its own that is as good as full, where the system lets users mount one.
+/// Uses a disk of its own of one page, if the system lets users mount one.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_full_disk_is_reported_and_leaves_no_partial_file() {
@@ -139,7 +139,7 @@ fn a_full_disk_is_reported_and_leaves_no_partial_file() {
         return;
     }
     for (name, line) in WRITERS {
-        // One page: taken, and to be had.
+        // With the one page taken, and with it free.
         for line in [
             format!("head -c 4096 /dev/zero >out/taken; {line}"),
             line.to_owned(),
@@ -156,12 +156,12 @@ fn a_full_disk_is_reported_and_leaves_no_partial_file() {
     }
     let line = "{} trace rays.csv > out/r";
     failed(line, &mounted("4k", line), "standard output");
-    // And with room again the same command does it.
+    // With more room the same command succeeds.
     let (output, said) = mounted("1m", WRITERS[0].1);
     assert!(output.status.success(), "{said}");
 }
 
-/// As a user who has no right there; an ordinary one, if the tests are run by one who has all rights.
+/// Runs as a user without rights to the files: as an ordinary user if root runs the tests.
 #[test]
 fn files_without_permission_are_reported_and_left_alone() {
     let folder = prepared();
@@ -170,7 +170,7 @@ fn files_without_permission_are_reported_and_left_alone() {
         fs::set_permissions(here.join(name), Permissions::from_mode(mode)).unwrap();
     };
     let is_root = shell(here, "test $(id -u) = 0").0.status.success();
-    // Where the program is may be closed to others.
+    // Other users may have no access to the program's own folder.
     let program = here.join("darkness");
     fs::copy(PROGRAM, &program).unwrap();
     for name in ["", "darkness", "tables"] {
@@ -207,7 +207,7 @@ fn files_without_permission_are_reported_and_left_alone() {
     mode("out", 0o755);
     assert_eq!(fs::read(here.join("out/t.table")).unwrap(), b"old");
 
-    // A table that cannot be kept is used all the same, and that is said.
+    // A table that cannot be saved is used all the same, and the program says so.
     mode("", 0o755);
     fs::remove_dir_all(here.join("tables")).unwrap();
     mode("", 0o555);

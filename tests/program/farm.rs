@@ -1,7 +1,7 @@
-//! Guards against films and jobs that the programs they are made for do not take: ffmpeg, Open Job Description's `openjd`, and
-//! Slurm in a cluster of one machine.
+//! Guards against films and jobs that other programs do not accept: ffmpeg, Open Job Description's `openjd`, and Slurm
+//! in a cluster of one machine.
 //!
-//! A program that is not installed is passed over, unless `DARKNESS_TOOLS` names it.
+//! A program that is not installed is skipped, unless `DARKNESS_TOOLS` names it.
 #![cfg(unix)]
 
 use std::env;
@@ -16,12 +16,12 @@ use tempfile::tempdir;
 use crate::harness::{PROGRAM, files};
 use crate::tools;
 
-/// Whether the tools are there.
+/// Returns whether all the tools are installed.
 fn has(tools: &[&str]) -> bool {
     tools.iter().all(|tool| tools::has(tool))
 }
 
-/// Where programs are looked for: the one that is tested before all others.
+/// The search path, with the program under test first.
 fn path() -> OsString {
     let ours = Path::new(PROGRAM).parent().unwrap().to_owned();
     let others = env::var_os("PATH").unwrap_or_default();
@@ -101,7 +101,7 @@ fn the_command_in_the_readme_makes_a_film_with_the_right_range_and_colours() {
     ] {
         assert!(told.lines().any(|line| line == entry), "{entry}: {told}");
     }
-    // Back to grey from 0 to 255 it is the frame, but for what the film's compression loses.
+    // Converted back to grey from 0 to 255, it equals the frame up to the film's compression.
     let args = [
         "-v",
         "error",
@@ -175,7 +175,7 @@ fn openjd_runs_the_job_and_its_chunks_give_the_files_of_one_process() {
         return;
     }
     let folder = tempdir().unwrap();
-    // A name that a shell would take apart.
+    // A name that a shell would split.
     let here = &folder.path().join("it's a \"farm\" $HOME");
     fs::create_dir(here).unwrap();
     let scene = "my scene.toml";
@@ -198,7 +198,7 @@ fn openjd_runs_the_job_and_its_chunks_give_the_files_of_one_process() {
     let frames = files(&here.join("frames"));
     assert!(frames.len() == 30 && frames == files(&here.join("one")));
 
-    // From elsewhere, by name and with other values than the defaults.
+    // With an absolute scene file and other values than the defaults.
     let absolute = here.join(scene);
     let args = [
         "job",
@@ -241,7 +241,7 @@ fn slurm_runs_the_job_to_its_last_frame() {
     let here = &folder.path().join("it's a farm");
     fs::create_dir(here).unwrap();
     write_scene(&here.join("small.toml"));
-    // 30 frames in chunks of 7: the last task has two.
+    // 30 frames in chunks of 7: the last task has two frames.
     let job = run(
         here,
         "darkness",

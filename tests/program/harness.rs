@@ -1,4 +1,4 @@
-//! What tests of the program share: ways to run it, and folders to run it in.
+//! What the tests of the program share: ways to run it, and folders to run it in.
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;

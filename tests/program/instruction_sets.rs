@@ -1,4 +1,4 @@
-//! Guards against frames that depend on the machine's instructions.
+//! Guards against frames that depend on the processor's instruction set.
 
 use std::fs;
 use std::path::Path;
@@ -7,8 +7,7 @@ use crate::harness::{darkness, fails, finish};
 
 const SETS: [&str; 4] = ["scalar", "sse4.2", "avx2", "avx512"];
 
-/// A picture drawn with no more than an instruction set; where the machine has no such instructions, with the best it
-/// has.
+/// Draws a picture with one instruction set, or with the best one below it that the machine has.
 fn drawn(set: &str, scene: &str, antialias: &str, folder: &Path) -> Vec<u8> {
     let picture = folder.join("frame.png");
     let args = ["render", scene, "--quiet", "--antialias", antialias];

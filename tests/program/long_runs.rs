@@ -1,7 +1,8 @@
-//! Guards against what only shows in time: memory and open files that grow with the frames, a process that is stopped and goes on, a
-//! reader slower than what it reads, clocks that jump.
+//! Guards against failures that only show in time: memory and open files that grow with the number of frames, a process
+//! that is paused and resumed, a reader that is slower than the program, and clocks that jump.
 //!
-//! `cargo test --release --test program long_runs -- --ignored --nocapture` draws a hundred thousand frames each way.
+//! `cargo test --release --test program long_runs -- --ignored --nocapture` draws a hundred thousand frames in each
+//! form.
 #![cfg(target_os = "linux")]
 
 use std::fs;
@@ -13,19 +14,19 @@ use std::time::Duration;
 use crate::harness::{PROGRAM, darkness, done, files, with_animation};
 use crate::tools;
 
-/// The most that a process held at a time.
+/// The most memory and open files that a process had at any time.
 #[derive(Debug, Clone, Copy, Default)]
 struct Held {
     kib: u64,
     files: usize,
 }
 
-/// Waits for a process to end well, and looks at what it holds meanwhile.
+/// Waits for a process to succeed, and measures what it holds meanwhile.
 fn watched(mut child: Child) -> Held {
     let place = Path::new("/proc").join(child.id().to_string());
     let mut most = Held::default();
     while child.try_wait().unwrap().is_none() {
-        // For a moment the process is a copy of this one.
+        // Between fork and exec the process is a copy of this one.
         let is_begun = fs::read_link(place.join("exe")).is_ok_and(|exe| exe == Path::new(PROGRAM));
         if !is_begun {
             continue;
@@ -42,7 +43,7 @@ fn watched(mut child: Child) -> Held {
     most
 }
 
-/// What a run over so many of `all` frames holds at most, written in this form.
+/// The most that a run over so many frames holds, written in this form.
 fn most_held(here: &Path, frames: u32, output: &str) -> Held {
     let range = format!("1-{frames}");
     let args = [
@@ -65,7 +66,7 @@ fn most_held(here: &Path, frames: u32, output: &str) -> Held {
     watched(command.spawn().unwrap())
 }
 
-/// Asserts that many frames take no more than few, as files, and as films to a file and a pipe.
+/// Asserts that many frames take no more memory or open files than few: as files, and as films to a file and a pipe.
 fn is_flat(few: u32, many: u32) {
     let folder = with_animation(many);
     let here = folder.path();
@@ -103,7 +104,7 @@ fn signal(child: &Child, name: &str) {
     assert!(sent.unwrap().success());
 }
 
-/// Guards against a system call that is interrupted and taken for a failure, and against a lock that is lost.
+/// Guards against an interrupted system call that is reported as a failure, and against a lock that is lost.
 #[test]
 fn a_run_that_is_paused_and_resumed_does_all_its_work() {
     let folder = with_animation(1000);
@@ -132,7 +133,7 @@ fn a_run_that_is_paused_and_resumed_does_all_its_work() {
     );
 }
 
-/// Guards against frames that pile up in memory, are lost or come twice.
+/// Guards against frames that pile up in memory, are lost, or are written twice.
 #[test]
 fn a_slow_reader_gets_every_frame_and_no_frames_pile_up() {
     let folder = with_animation(1500);
@@ -157,7 +158,7 @@ fn a_slow_reader_gets_every_frame_and_no_frames_pile_up() {
         .unwrap();
     let mut pipe = child.stdout.take().unwrap();
     let reader = std::thread::spawn(move || {
-        // At first some bytes at a time, then some frames.
+        // Reads a few bytes at a time at first, then a few frames.
         let (mut read, mut buffer): (Vec<u8>, _) = (Vec::new(), vec![0_u8; 1 << 16]);
         for turn in 0.. {
             let some = if turn < 100 { 97 } else { 1 << 16 };
@@ -175,8 +176,8 @@ fn a_slow_reader_gets_every_frame_and_no_frames_pile_up() {
     assert!(slow.kib < quick.kib + 2048, "{quick:?}, {slow:?}");
 }
 
-/// Guards against waits and figures from a clock that somebody sets: forward by a year, back by ten, while frames are drawn. (The
-/// monotonic clock, which no system turns back, is turned too.)
+/// Guards against waits and figures that depend on a clock that is set while frames are drawn: forward by a year, back
+/// by ten. (The monotonic clock is turned too, although no system turns it back.)
 #[test]
 fn clocks_that_jump_change_nothing() {
     if !tools::has("faketime") {

@@ -1,4 +1,4 @@
-//! The program as a whole, run in folders of its own: what it prints, writes, refuses and survives.
+//! The program as a whole, run in temporary folders: what it prints, writes, refuses and survives.
 
 #[path = "../common/process.rs"]
 mod process;

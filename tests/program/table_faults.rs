@@ -22,7 +22,7 @@ fn start(folder: &Path, args: &[&str]) -> Child {
         .unwrap()
 }
 
-/// Whether there is a table, which then is whole.
+/// Returns whether there is a table; panics if it is not a valid one.
 fn is_there(path: &Path) -> bool {
     match table::open(path) {
         Ok(_) => true,
@@ -31,14 +31,14 @@ fn is_there(path: &Path) -> bool {
     }
 }
 
-/// Guards against a table of which a part is there, and against leftovers that nobody removes.
+/// Guards against a partial table, and against temporary files that nobody removes.
 #[test]
 fn a_writer_killed_at_any_moment_leaves_the_old_table_or_the_new_one() {
     let folder = tempdir().unwrap();
     let here = folder.path();
     let path = here.join("a.table");
     let make = ["table", "draft", "-o", "a.table", "--force"];
-    // Moments of as long as the whole takes here, and a little beyond.
+    // Moments over as long as the whole run takes here, and a little longer.
     let begun = Instant::now();
     done(here, &make);
     let whole = begun.elapsed();
@@ -99,7 +99,7 @@ fn a_mapped_table_does_not_change_when_its_file_is_replaced() {
     assert_eq!(table::open(&path).unwrap().metadata().spec.name, "standard");
 }
 
-/// Guards against a signal for a table that somebody cuts short: one that is read into memory is not his any more.
+/// Guards against a signal for a table that is cut short: a table that was read into memory is independent of its file.
 #[test]
 fn without_mmap_a_table_that_is_cut_short_stays_whole() {
     let folder = with_animation(400);
@@ -115,7 +115,7 @@ fn without_mmap_a_table_that_is_cut_short_stays_whole() {
     fs::copy(here.join("tables/draft.table"), here.join("a.table")).unwrap();
     done(here, &[&draw[..], &["whole.raw"]].concat());
     let mut child = start(here, &[&draw[..], &["cut.raw"]].concat());
-    // The film's file is begun once the table is read.
+    // The film's file appears once the table is read.
     let begun = || files(here).keys().any(|name| name.starts_with(".cut.raw"));
     while !begun() && child.try_wait().unwrap().is_none() {}
     OpenOptions::new()
@@ -140,7 +140,7 @@ fn without_mmap_a_table_that_is_cut_short_stays_whole() {
     );
 }
 
-/// A disk that is full after so many bytes.
+/// A writer to a disk that is full after so many bytes.
 struct Filling<W> {
     file: W,
     room: usize,
@@ -162,7 +162,7 @@ impl<W: Write> Write for Filling<W> {
     }
 }
 
-/// Guards against a part of a table in the place of a whole one, wherever the disk fills up.
+/// Guards against a partial table in place of a whole one, wherever the disk fills up.
 #[test]
 fn a_disk_that_fills_up_after_any_byte_leaves_the_old_table_and_nothing_else() {
     let folder = tempdir().unwrap();
@@ -181,7 +181,7 @@ fn a_disk_that_fills_up_after_any_byte_leaves_the_old_table_and_nothing_else() {
     assert!(is_there(&path));
 }
 
-/// Guards against a wait for the other end of a pipe, and for the end of what has none.
+/// Guards against waiting for the other end of a pipe, and for the end of a device that has none.
 #[test]
 fn pipes_devices_and_folders_are_refused_at_once() {
     let folder = tempdir().unwrap();
@@ -222,7 +222,7 @@ fn pipes_devices_and_folders_are_refused_at_once() {
     }
 }
 
-/// Guards against a length that is believed: what is mapped is as long as its first bytes say.
+/// Guards against mapping a file that is not as long as its first bytes say.
 #[test]
 fn a_file_of_another_length_is_refused_before_it_is_mapped() {
     let folder = tempdir().unwrap();
@@ -254,7 +254,7 @@ fn a_file_of_another_length_is_refused_before_it_is_mapped() {
     assert!(table::read(&path).unwrap().bytes() == table::open(&path).unwrap().bytes());
 }
 
-/// Guards against memory and time for what only says that it is a table, however long it is.
+/// Guards against spending memory and time on a file that only claims to be a table, however long it is.
 #[test]
 fn a_sparse_file_of_a_terabyte_is_refused_by_its_beginning() {
     let folder = tempdir().unwrap();
@@ -267,7 +267,7 @@ fn a_sparse_file_of_a_terabyte_is_refused_by_its_beginning() {
     start.extend((length - 64).to_le_bytes());
     start.extend(crc32fast::hash(&start).to_le_bytes());
     fs::write(&path, &start).unwrap();
-    // It has holes in place of numbers.
+    // Its numbers are a hole in a sparse file.
     OpenOptions::new()
         .write(true)
         .open(&path)
@@ -280,7 +280,7 @@ fn a_sparse_file_of_a_terabyte_is_refused_by_its_beginning() {
     }
 }
 
-/// Guards against a table that each of many workers holds for itself.
+/// Guards against a copy of the table in each of many workers.
 #[test]
 #[cfg(target_os = "linux")]
 fn many_processes_share_the_memory_of_one_table() {
@@ -288,11 +288,11 @@ fn many_processes_share_the_memory_of_one_table() {
     let here = folder.path();
     done(here, &["table", "standard", "-o", "a.table"]);
     let size = fs::metadata(here.join("a.table")).unwrap().len();
-    // They wait for rays.
+    // The processes wait for rays.
     let mut children: Vec<Child> = (0..64)
         .map(|_| start(here, &["trace", "-", "--table", "a.table", "--quiet"]))
         .collect();
-    // The memory of the table, each page shared out among those that hold it; how many have mapped it.
+    // The table's memory, each page divided among the processes that hold it, and how many have mapped it.
     let shared_out = |children: &[Child]| {
         let (mut total, mut count) = (0, 0);
         for child in children {
@@ -328,7 +328,7 @@ fn many_processes_share_the_memory_of_one_table() {
     );
 }
 
-/// Guards against a file that is otherwise than its documentation draws it: a reader that knows only that reads it.
+/// Guards against a file that differs from its documented layout: a reader written from the documentation reads it.
 #[test]
 fn the_documented_layout_is_the_one_of_the_files() {
     let python = Command::new("python3").arg("--version").output();

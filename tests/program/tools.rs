@@ -1,10 +1,10 @@
-//! Programs that tests run beside this one.
+//! Other programs that tests run.
 
 use std::env;
 use std::process::Command;
 
-/// Whether a tool is there. One that is not is passed over, unless `DARKNESS_TOOLS` names it; the system's own folders are looked
-/// through too.
+/// Returns whether a tool is installed, in the system's own folders too. Panics if it is not and `DARKNESS_TOOLS` names
+/// it.
 pub(crate) fn has(tool: &str) -> bool {
     let path = env::var("PATH").unwrap_or_default();
     let found = Command::new("sh")
@@ -17,6 +17,6 @@ pub(crate) fn has(tool: &str) -> bool {
     let needed = env::var("DARKNESS_TOOLS").unwrap_or_default();
     let is_needed = needed.split_whitespace().any(|needed| needed == tool);
     assert!(!is_needed, "{tool} is not installed");
-    eprintln!("{tool} is not installed: passed over");
+    eprintln!("{tool} is not installed: the test is skipped");
     false
 }

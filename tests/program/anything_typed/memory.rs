@@ -1,4 +1,4 @@
-//! Pictures too large, and memory that is not there.
+//! Guards against pictures that are too large, and against memory that the system refuses.
 
 use std::fs;
 use std::process::Command;
@@ -6,7 +6,7 @@ use std::process::Command;
 use super::is_sentence;
 use crate::harness::{PROGRAM, done, files, refused, with_animation};
 
-/// Guards against a picture that is asked for and takes the memory of all that runs beside it.
+/// Guards against a picture that takes the memory of everything else that runs.
 #[test]
 fn pictures_that_are_too_large_are_refused_before_memory_is_allocated() {
     let folder = with_animation(12);
@@ -39,7 +39,7 @@ fn pictures_that_are_too_large_are_refused_before_memory_is_allocated() {
     ] {
         refused(here, &["render", &format!("--size={size}")], 2, &["--size"]);
     }
-    // In a scene's file, too.
+    // In a scene file too.
     let scene = fs::read_to_string(here.join("small.toml")).unwrap();
     fs::write(
         here.join("huge.toml"),
@@ -54,7 +54,7 @@ fn pictures_that_are_too_large_are_refused_before_memory_is_allocated() {
         2,
         &["1.5 TiB of memory", "--max-memory"],
     );
-    // The limit can be moved, and what does not fit side by side is drawn one by one.
+    // The limit can be changed, and frames that do not fit together are drawn one by one.
     refused(
         here,
         &[
@@ -97,14 +97,14 @@ fn pictures_that_are_too_large_are_refused_before_memory_is_allocated() {
     assert_eq!(files(&here.join("b")).len(), 12);
 }
 
-/// Guards against the end of the process where memory is refused: what the system says is told.
+/// Guards against a process that ends without a sentence when the system refuses memory.
 #[test]
 #[cfg(target_os = "linux")]
 fn memory_that_the_system_refuses_is_reported() {
     let folder = with_animation(1);
     let here = folder.path();
     let mut refused = 0;
-    // Kilobytes of address space: from not enough to begin, over none for the frame, to enough for its file.
+    // Kilobytes of address space: from too little to start, over too little for the frame, to enough.
     for limit in (16_000..300_000).step_by(12_000) {
         for antialias in [true, false] {
             let line = format!(

@@ -1,5 +1,5 @@
-//! Guards against what people and programs may type: scenes, ranges, names and sizes that make no sense are refused in a sentence,
-//! and neither crash the program, nor keep it, nor leave anything behind.
+//! Guards against senseless input of any kind: scenes, ranges, names and sizes that make no sense are refused in a
+//! sentence. They do not crash the program, keep it running, or leave files behind.
 #![cfg(unix)]
 
 mod memory;
@@ -13,7 +13,7 @@ use std::process::Command;
 
 use crate::harness::{PROGRAM, done, refused, run_briefly, with_animation};
 
-/// Runs the program, for no more than a minute, and returns its exit code and what it said.
+/// Runs the program for no more than a minute, and returns its exit code and its standard error.
 fn typed(folder: &Path, args: &[&OsStr]) -> (i32, String) {
     let output = run_briefly(folder, args);
     let said = String::from_utf8(output.stderr).unwrap();
@@ -27,7 +27,7 @@ fn words(args: &[&'static str]) -> Vec<&'static OsStr> {
     args.iter().map(|&arg| OsStr::new(arg)).collect()
 }
 
-/// Asserts that it is a sentence of the program.
+/// Asserts that the text is one of the program's own sentences.
 fn is_sentence(said: &str) {
     assert!(
         said.starts_with("darkness: ") || said.starts_with("error: "),
@@ -40,7 +40,7 @@ fn is_sentence(said: &str) {
     );
 }
 
-/// Guards against a file that grows for as long as its own growth is read, and against a scene under what is drawn of it.
+/// Guards against a file that grows without end while it is read, and against a picture that overwrites its own scene.
 #[test]
 fn a_file_that_is_read_is_not_written_to_by_redirection() {
     let folder = with_animation(2);
@@ -71,7 +71,7 @@ fn a_file_that_is_read_is_not_written_to_by_redirection() {
     done(here, &["table", "inspect", "tables/draft.table"]);
 }
 
-/// Guards against variables and limits that reach deeper than the program's own options.
+/// Guards against environment variables and limits that break what the program's own options set.
 #[test]
 fn environment_variables_and_limits_change_nothing() {
     let folder = with_animation(2);
@@ -96,7 +96,7 @@ fn environment_variables_and_limits_change_nothing() {
         let said = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(code), "{line}: {said}");
     }
-    // Ranges of a hundred million frames, where one is asked for.
+    // Ranges of a hundred million frames, where a single frame is required.
     let many: Vec<String> = (2..900).map(|step| format!("1-100000000x{step}")).collect();
     let scene = fs::read_to_string(here.join("small.toml")).unwrap();
     fs::write(

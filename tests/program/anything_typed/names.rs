@@ -1,4 +1,4 @@
-//! Names of files, and ranges of frames.
+//! Guards against senseless ranges of frames, and against file names that are taken for something else.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -182,7 +182,7 @@ fn names_may_lead_upwards_and_have_any_bytes() {
     }
 }
 
-/// Guards against commands that take a file's name for an option, and terminals that take it for an order.
+/// Guards against file names that are read as options, and against names that control the terminal.
 #[test]
 fn names_that_look_like_options_or_patterns_are_taken_as_names() {
     let folder = with_animation(2);

@@ -1,4 +1,4 @@
-//! Scenes made up at random, from good values, strange ones and none at all.
+//! Guards against scenes that crash the program: they are made at random from good values, strange ones and none.
 
 use std::cell::Cell;
 use std::fs;
@@ -9,10 +9,10 @@ use proptest::test_runner::{Config, TestRng, TestRunner};
 use super::{is_sentence, typed, words};
 use crate::harness::{files, with_animation};
 
-/// How often the program is run on scenes made up.
+/// How many random scenes the program is run on.
 const SCENES: u32 = 1000;
 
-/// A scene's keys: the part, the key, and values with which the others make a scene.
+/// A scene's keys: the section, the key, and valid values.
 const KEYS: [(&str, &str, &[&str]); 18] = [
     ("camera", "position", &["[20, 0, 5]", "[0.0, 1.2, 0.1]"]),
     ("camera", "focus", &["[0, 0, 0]", "[1, 2, 3]"]),
@@ -38,7 +38,7 @@ const KEYS: [(&str, &str, &[&str]); 18] = [
     ("[animation.keyframe]", "fov", &["30"]),
 ];
 
-/// Numbers at the ends of all that a number can be, and beyond.
+/// Numbers at the limits of their type, and beyond.
 const NUMBERS: [&str; 24] = [
     "nan",
     "inf",
@@ -66,7 +66,7 @@ const NUMBERS: [&str; 24] = [
     "4294967296",
 ];
 
-/// What is no number.
+/// Values that are not numbers.
 const OTHERS: [&str; 16] = [
     "",
     "true",
@@ -86,7 +86,7 @@ const OTHERS: [&str; 16] = [
     "0x",
 ];
 
-/// A value: a good one, a strange number, a vector of these, or none of all that.
+/// A value: a valid one, a strange number, a vector of these, or not a number.
 fn value(good: &'static [&'static str]) -> impl Strategy<Value = String> {
     let number = || proptest::sample::select(&NUMBERS[..]);
     prop_oneof![
@@ -102,7 +102,7 @@ fn value(good: &'static [&'static str]) -> impl Strategy<Value = String> {
     ]
 }
 
-/// A scene's text: each key there, not there or there twice; then a part of it, or with bytes of another kind in it.
+/// A scene's text with each key once, twice or missing; some are then cut short, or get foreign bytes.
 fn scene() -> impl Strategy<Value = Vec<u8>> {
     let keys: Vec<_> = KEYS
         .iter()
@@ -169,7 +169,7 @@ fn a_thousand_random_scenes_are_each_drawn_or_refused() {
         failure_persistence: None,
         ..Config::default()
     };
-    // The same thousand each time.
+    // The same thousand scenes each time.
     let random = TestRng::deterministic_rng(config.rng_algorithm);
     let made = TestRunner::new_with_rng(config, random).run(&scene(), |text| {
         fs::write(here.join("made.toml"), &text).unwrap();

@@ -1,5 +1,5 @@
-//! Guards against a command line that writes where it should not, goes on with what is wrong, panics, or says
-//! something else than the library answers.
+//! Guards against a command line that writes where it should not, goes on after an error, panics, or gives other
+//! answers than the library.
 
 mod render;
 mod scene;

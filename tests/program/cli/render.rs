@@ -1,4 +1,4 @@
-//! `darkness render`: one picture.
+//! `darkness render` of one picture.
 
 use std::fs;
 
@@ -30,15 +30,15 @@ fn render_works_at_once_in_an_empty_folder_and_leaves_nothing_else() {
         "{white} white pixels"
     );
 
-    // The second time the table is there, and -q says nothing.
+    // The second time the table exists, and -q prints nothing.
     let before = fs::read(here.join("classic.png")).unwrap();
     let (_, stderr) = done(here, &["render", "-q"]);
     assert_eq!(stderr, "");
     assert_eq!(fs::read(here.join("classic.png")).unwrap(), before);
 }
 
-/// The table follows from the picture: the draft one for a small picture, none for one that even the fine table is
-/// too coarse for; `--explain` tells which and why, and draws nothing.
+/// The picture decides the table: the draft table for a small picture, none if even the fine table is too coarse.
+/// `--explain` says which and why, and draws nothing.
 #[test]
 fn a_picture_takes_the_smallest_table_that_is_good_enough() {
     let folder = tempdir().unwrap();
@@ -76,7 +76,7 @@ fn a_picture_takes_the_smallest_table_that_is_good_enough() {
         ["draft.table", "fine.table", "standard.table"]
     );
 
-    // A table that somebody names is taken all the same, and what comes of it is said.
+    // A table that is named is used all the same, with a warning.
     let coarse = ["--table", "tables/draft.table", "--tolerance", "1e-6"];
     let (_, stderr) = done(here, &[&["render", "--size", SMALL][..], &coarse].concat());
     assert!(
@@ -137,7 +137,7 @@ fn other_methods_need_no_table_and_draw_the_same_picture() {
     for name in ["i.png", "j.PNG", "t.png"] {
         let pairs = pixels("e.png").into_raw().into_iter();
         let pairs = pairs.zip(pixels(name).into_raw());
-        // A pixel whose centre is on an edge to the last digits may fall to either side.
+        // A pixel whose centre is on an edge to the last digit may be either colour.
         let different = pairs.filter(|(a, b)| a != b).count();
         assert!(different <= 1, "{name}: {different} pixels differ");
     }
@@ -172,7 +172,7 @@ fn render_checks_where_the_picture_goes_before_any_work() {
     ] {
         refused(here, &["render", "-o", output], code, words);
     }
-    // No one may write here, not even root, to whom modes mean nothing.
+    // Nobody may write here, not even root, who may write anywhere else.
     #[cfg(target_os = "linux")]
     refused(
         here,
@@ -192,7 +192,7 @@ fn render_does_not_write_over_what_it_reads() {
     let before = fs::read(here.join("table.png")).unwrap();
     let args = ["render", "--table", "table.png", "-o", "./table.png"];
     refused(here, &args, 2, &["table.png", "the table"]);
-    // The scene's default picture has the scene's own name here.
+    // Here the scene's default picture has the name of the scene itself.
     let args = ["render", "--table", "table.png", "scene.png"];
     refused(here, &args, 2, &["scene.png", "the scene"]);
     assert_eq!(fs::read(here.join("table.png")).unwrap(), before);

@@ -1,4 +1,4 @@
-//! `darkness scene`, and scenes that are none.
+//! `darkness scene`, and files that are not scenes.
 
 use std::fs;
 

@@ -1,4 +1,4 @@
-//! `darkness table`, and the tables that other verbs take.
+//! `darkness table`, and the tables that other verbs read.
 
 use std::fs;
 use std::path::Path;
@@ -26,12 +26,12 @@ fn only_the_default_table_is_made_without_being_asked_for() {
     fails(&variable.output().unwrap(), 1, &words);
     assert!(listing(here).is_empty());
 
-    // The flag goes before the environment, and an empty variable is none.
+    // The flag has priority over the environment, and an empty variable counts as unset.
     done(here, &["table", "draft", "-o", "d.table"]);
     for (variable, flag, words) in [
         ("other.table", &["--table", "d.table"][..], "table draft"),
         ("d.table", &[], "table draft"),
-        // A small picture needs the draft table, one with edges ten times as right the standard one.
+        // A small picture needs the draft table; with a tenth of the tolerance it needs the standard one.
         ("", &["--tolerance", "0.0001"], "table standard"),
     ] {
         let mut command = darkness(here, &render);
@@ -100,7 +100,7 @@ fn a_table_that_is_not_whole_is_refused_and_left_as_it_is() {
     assert_eq!(listing(here), ["good", "tables"]);
     assert_eq!(listing(&here.join("tables")), ["standard.table"]);
 
-    // What the message says helps.
+    // The command in the message helps.
     done(here, &["table", "standard", "--force"]);
     done(here, &["table", "verify", "tables/standard.table"]);
 }
@@ -170,7 +170,7 @@ fn verify_finds_what_the_checksums_cannot() {
     let folder = with_draft();
     let here = folder.path();
     let mut bytes = fs::read(here.join("a.table")).unwrap();
-    // One bit of the last number, and all checksums put right: a whole file with a wrong table in it.
+    // One bit of the last number is changed and all checksums are corrected: a valid file with a wrong table.
     let end = bytes.len();
     bytes[end - 8] ^= 1;
     let numbers = usize::try_from(u64::from_le_bytes(bytes[24..32].try_into().unwrap())).unwrap();

@@ -11,7 +11,7 @@ use crate::harness::{
 };
 use crate::reference_rays::reference_rays;
 
-/// A row that `trace` printed.
+/// One row of the output of `trace`.
 struct Row {
     u0: f64,
     dudphi: f64,
@@ -20,7 +20,7 @@ struct Row {
     angle: f64,
 }
 
-/// What `trace` printed, a group of rows for each ray.
+/// The rows that `trace` printed, grouped by ray.
 fn rows(csv: &str) -> Vec<Vec<Row>> {
     let mut lines = csv.lines();
     assert_eq!(lines.next(), Some("u0,dudphi,event,radius,angle"));
@@ -148,7 +148,7 @@ fn trace_names_a_bad_row_and_goes_on_with_the_others() {
         // A header, and two events of each of the two good rows.
         assert_eq!(stdout.lines().count(), 5, "{stdout}");
     }
-    // Of a file that is none of rays not every row is told.
+    // Only the first hundred bad rows are reported.
     let bad = "u0,dudphi\n".to_owned() + &"a,b\n".repeat(5000) + "0.1,-inf\n";
     fs::write(here.join("rays.csv"), bad).unwrap();
     let (_, stderr) = run(here, &["trace", "rays.csv", "--table", "a.table"]);
