@@ -3,7 +3,7 @@
 use darkness::table::FixedBytes;
 use darkness::table::format::{MAGIC, VERSION};
 
-/// Where the format's page has the preamble's fields.
+/// Offsets of the preamble's fields, as documented in `table::format`.
 pub(crate) const VERSION_AT: usize = 8;
 pub(crate) const METADATA_LENGTH_AT: usize = 12;
 pub(crate) const METADATA_CRC_AT: usize = 16;
@@ -12,7 +12,7 @@ pub(crate) const NUMBERS_LENGTH_AT: usize = 24;
 pub(crate) const PREAMBLE_CRC_AT: usize = 32;
 pub(crate) const METADATA_AT: usize = 36;
 
-/// Bytes that begin at a multiple of 8, and can be changed.
+/// Mutable bytes, aligned to 8.
 #[derive(Debug, Clone)]
 pub(crate) struct Aligned {
     words: Vec<u64>,
@@ -46,13 +46,13 @@ pub(crate) fn write_u32(bytes: &mut [u8], at: usize, value: u32) {
     bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
 }
 
-/// Makes the preamble's own checksum right again.
+/// Corrects the preamble's own checksum.
 pub(crate) fn mend_preamble(bytes: &mut [u8]) {
     let crc = crc32fast::hash(&bytes[..PREAMBLE_CRC_AT]);
     write_u32(bytes, PREAMBLE_CRC_AT, crc);
 }
 
-/// A file with the given metadata and numbers, every checksum and length of it right.
+/// Returns a file with the given metadata and numbers, with all lengths and checksums correct.
 pub(crate) fn sealed(metadata: &[u8], numbers: &[u8]) -> Aligned {
     let mut bytes = vec![0; METADATA_AT];
     bytes[..8].copy_from_slice(&MAGIC);

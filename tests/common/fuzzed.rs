@@ -2,7 +2,7 @@
 //! accepted or refused, and what is accepted can be used. Fuzzers run these functions on bytes of their own,
 //! `tests/files/corpora.rs` on the bytes that were kept.
 
-// Each fuzzing program takes what it needs.
+// Each fuzzing program uses one of these functions.
 #![allow(dead_code)]
 
 pub(crate) mod crafted;
@@ -97,7 +97,8 @@ fn draw(scene: &Scene, angles: &impl SweptAngles) {
     assert_eq!(coverage::render(&view, &curves).unwrap().len(), pixels);
 }
 
-/// The bytes as a scene's file. One that is accepted reads back the same from its own form, and can be drawn.
+/// Reads the bytes as a scene file. A scene that is accepted is unchanged when it is written and read again, and can be
+/// drawn.
 pub(crate) fn scene(bytes: &[u8]) {
     let Ok(text) = str::from_utf8(bytes) else {
         return;
@@ -125,7 +126,7 @@ pub(crate) fn scene(bytes: &[u8]) {
     }
 }
 
-/// What says why something is refused: not empty, not endless, and nothing in it that a terminal obeys.
+/// Asserts that a message is not empty, not too long, and has no control characters.
 fn sentence(error: &impl std::error::Error) {
     let message = error.to_string();
     assert!(!message.trim().is_empty());
@@ -139,7 +140,7 @@ fn draft() -> &'static Table<Memory> {
     DRAFT.get_or_init(|| generate(&Spec::named("draft").unwrap(), &|_, _| ()).unwrap())
 }
 
-/// The bytes as a range of frames: its numbers rise, are counted, and are those of its own form.
+/// Reads the bytes as a range of frames: its numbers rise, their count is right, and writing and reading keeps them.
 pub(crate) fn frames(bytes: &[u8]) {
     const MOST: usize = 10_000;
     let Ok(text) = str::from_utf8(bytes) else {
@@ -165,7 +166,7 @@ pub(crate) fn frames(bytes: &[u8]) {
     if numbers.len() < MOST {
         assert_eq!(range.count(), numbers.len() as u64);
         assert_eq!(numbers.last(), Some(&range.last()));
-        // By its definition.
+        // By the definition of a range.
         let all = (1..=range.last().min(MOST as u32)).filter(|&number| range.contains(number));
         assert!(
             all.eq(numbers
@@ -176,7 +177,7 @@ pub(crate) fn frames(bytes: &[u8]) {
     }
 }
 
-/// The bytes as a list of rays: each line is a ray or a sentence, and each ray ends.
+/// Reads the bytes as a list of rays: each line gives a ray or an error, and each ray ends.
 pub(crate) fn rays(bytes: &[u8]) {
     let mut rays = match Rays::new(bytes, "list".into()) {
         Ok(rays) => rays,

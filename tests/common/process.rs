@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::process::Command;
 
-/// The program's file.
+/// The program's executable file.
 pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_darkness");
 
-/// The program with these arguments, in a folder, whatever table the environment names.
+/// Returns a command that runs the program in a folder with these arguments, and with no table from the environment.
 pub(crate) fn darkness(folder: &Path, args: &[&str]) -> Command {
     let mut command = Command::new(PROGRAM);
     command

@@ -5,7 +5,7 @@ use darkness::orbit::{EventKind, Fate};
 /// One event of one ray, known to 17 digits or more.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ReferenceRay {
-    /// What is hard about the ray.
+    /// The difficulty that the ray tests.
     pub(crate) case: String,
     /// Inverse radius where the ray starts.
     pub(crate) u0: f64,
@@ -21,7 +21,7 @@ pub(crate) struct ReferenceRay {
     pub(crate) condition: f64,
 }
 
-/// The rows of `tests/reference/rays.csv`, in the file's order: all events of one ray stand together.
+/// The rows of `tests/reference/rays.csv`, in the file's order. All events of a ray are consecutive.
 pub(crate) fn reference_rays() -> Vec<ReferenceRay> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/rays.csv");
     let text = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"));

@@ -4,7 +4,7 @@ use darkness::scene::Scene;
 use glam::DVec3;
 use proptest::prelude::*;
 
-/// What is hard about a scene.
+/// The difficulty of a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// Anywhere, looking anywhere, through any lens; the disk from a thread to a plain.
@@ -13,11 +13,11 @@ pub(crate) enum Kind {
     PhotonRing,
     /// From inside the photon sphere.
     Inside,
-    /// From the disk's plane, or all but.
+    /// From the disk's plane, or close to it.
     InPlane,
     /// From the disk's axis.
     OnAxis,
-    /// From so far that all of the disk is some pixels.
+    /// From so far away that the whole disk is a few pixels.
     Distant,
 }
 

@@ -1,5 +1,5 @@
 //! Guards against a pixel whose grey is not the share of its square that the disk covers: against the reference's 32 ×
-//! 32 samples a pixel, against circles, and against shares found from the curves in another way (`common/shares.rs`),
+//! 32 samples a pixel, against circles, and against shares found from the curves in another way (`shares.rs`),
 //! over the built-in scenes and over random ones.
 
 use std::path::Path;

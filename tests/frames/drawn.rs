@@ -13,10 +13,10 @@ pub(crate) struct Program {
     folder: TempDir,
 }
 
-/// A picture, and how it came about.
+/// A picture, and the method that drew it.
 pub(crate) struct Drawn {
     pub(crate) pixels: Vec<u8>,
-    /// Whether from curves, or else each pixel by itself.
+    /// True if it was drawn from curves, false if pixel by pixel.
     pub(crate) by_curves: bool,
 }
 
@@ -34,7 +34,7 @@ impl Program {
             self.folder.path().join("scene.toml"),
             self.folder.path().join("scene.png"),
         );
-        // What a pixel's centre sees can be compared with its ray.
+        // Hard edges: a pixel shows what its centre sees, and can be compared with its ray.
         fs::write(&file, scene.with_antialias(false).to_toml()).unwrap();
         let (_, said) = done(self.folder.path(), &["render", "scene.toml"]);
         let pixels = image::open(&picture).unwrap().to_luma8().into_raw();

@@ -10,7 +10,7 @@ use glam::DVec3;
 use crate::drawn::Program;
 use crate::methods::{by_pixels, differing, sees_disk};
 
-/// What a scene is made of here; the disk lies across z.
+/// The parameters of a scene; the disk's normal is the z axis.
 #[derive(Debug, Clone, Copy)]
 struct Shot {
     position: DVec3,
@@ -32,7 +32,7 @@ impl Shot {
     }
 
     fn up(&self) -> DVec3 {
-        // Neither the view's direction nor in line with anything else.
+        // Not parallel to the view or to any axis.
         let view = (self.focus - self.position).normalize();
         let up = DVec3::new(0.1, 0.2, 1.0);
         if view.cross(up).length() > 0.3 {
@@ -95,7 +95,7 @@ impl Shot {
     }
 }
 
-/// How frames came about, and what they show.
+/// How many frames were drawn in which way, and what they show.
 #[derive(Debug, Default)]
 struct Count {
     frames: usize,
@@ -181,7 +181,7 @@ fn every_place_and_every_direction_is_drawn_right() {
     assert!(count.with_both_colours >= 40, "{count:?}");
 }
 
-/// The widest lens there is in practice, and long ones: down to pictures of 1e-9° whose centre is on an edge.
+/// The widest practical lens, and long ones, down to pictures of 1e-9° whose centre is on an edge.
 #[test]
 fn the_widest_and_the_longest_lenses_are_drawn_right() {
     let program = Program::new();
@@ -304,7 +304,7 @@ fn pictures_of_one_pixel_one_row_and_one_column_are_drawn_right() {
 }
 
 /// A disk so wide that no curve of its outer edge can be drawn, since it bends within 1e-12 of a half turn: each
-/// pixel's ray is followed by itself, and the program says so.
+/// pixel's own ray is evaluated, and the program says so.
 #[test]
 fn a_disk_too_wide_for_curves_is_drawn_pixel_by_pixel() {
     let program = Program::new();
@@ -318,7 +318,7 @@ fn a_disk_too_wide_for_curves_is_drawn_pixel_by_pixel() {
     assert!(!drawn.by_curves);
     let exact = by_pixels(&shot.scene(), &Exact);
     differing("a wide disk", &shot.scene(), &drawn.pixels, &exact);
-    // A lens that shows none of that part of the curve needs none of it.
+    // A lens that does not show that part of the curve does not need it.
     shot.fov = 1e-4;
     assert!(program.draw(&shot.scene()).by_curves);
 }

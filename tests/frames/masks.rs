@@ -11,7 +11,8 @@ use darkness::scene::{Scene, builtins};
 use crate::methods::{by_curves, by_pixels, differing};
 use crate::tables::table;
 
-/// In a reference mask: moving the sample by a thousandth of a pixel changes the answer, either is right.
+/// The value in a reference mask for pixels that may be either colour: moving the sample by a thousandth of a pixel
+/// changes the answer.
 const EITHER: u8 = 128;
 
 /// The scene files beside the reference's masks; those of shares (`coverage-*`) are another test's.
@@ -54,7 +55,7 @@ fn not_one_pixel_differs_from_the_reference() {
         );
         let known = known.into_raw();
         let certain = known.iter().filter(|&&value| value != EITHER).count();
-        // A mask of doubts would be passed by any frame.
+        // A mask of such pixels alone would accept any frame.
         assert!(
             known.contains(&WHITE) && known.contains(&0),
             "{}",

@@ -17,7 +17,7 @@ pub(crate) fn by_curves(scene: &Scene, angles: &impl SweptAngles) -> Vec<u8> {
     mask::render(&view, &curves).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The frame from each pixel's ray followed by itself.
+/// The frame from each pixel's own ray.
 pub(crate) fn by_pixels(scene: &Scene, orbits: &impl Orbits) -> Vec<u8> {
     let view = View::new(scene);
     pixelwise::render(scene, &view, orbits, &|| ()).unwrap_or_else(|error| panic!("{error}"))
@@ -48,7 +48,7 @@ pub(crate) fn sees_disk_by(
     let first = view.plane_crossing(ray.ta, s);
     let crossings = (0..40).map(|k| first + f64::from(k) * PI);
     crossings.filter(|&angle| angle > 0.0).any(|angle| {
-        // Of all events up to this angle the last one says where the ray is.
+        // The last event up to this angle tells where the ray is.
         let before = events
             .iter()
             .take_while(|event| event.angle <= angle)
@@ -86,7 +86,7 @@ impl SeenByCurves {
         }
     }
 
-    /// Whether they are as right as frames from curves must be.
+    /// Whether the curves are as accurate as frames require.
     pub(crate) fn reach(&self) -> bool {
         self.curves.error().total() <= self.tolerance
     }

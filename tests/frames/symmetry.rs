@@ -125,7 +125,7 @@ fn checked_frame(name: &str, scene: &Scene) -> Vec<u8> {
     exact
 }
 
-/// Rows upside down.
+/// The rows from bottom to top.
 fn flipped(frame: &[u8], width: u32) -> Vec<u8> {
     frame
         .chunks(width as usize)

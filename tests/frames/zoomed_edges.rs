@@ -22,7 +22,7 @@ fn scene(position: DVec3, focus: DVec3, fov: f64) -> Scene {
     Scene::from_toml(&text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-/// Where on a line the answer changes between two places, to `resolution`; none where it is the same at both.
+/// Returns where on a line the answer changes between two places, to `resolution`, or `None` if it is the same at both.
 fn change(sees: impl Fn(f64) -> bool, (from, to): (f64, f64), resolution: f64) -> Option<f64> {
     let (mut low, mut high) = (from, to);
     let first = sees(low);
@@ -72,7 +72,7 @@ fn curves_that_claim_the_tolerance_are_right_to_a_thousandth_of_a_pixel() {
         for step in 0..=16 {
             let fov = libm::pow(10.0, -0.25 * f64::from(step));
             for &(position, focus) in &views {
-                // The hole is as large in the picture from afar.
+                // Far cameras get longer lenses, so that the hole is as large in the picture.
                 let scene = scene(position, focus, fov * (30.0 / position.length()).min(1.0));
                 let view = View::new(&scene);
                 let curves = SeenByCurves::new(&scene, &table(name).lookup());

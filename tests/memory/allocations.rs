@@ -16,16 +16,16 @@ struct Counting;
 
 static COUNT: AtomicU64 = AtomicU64::new(0);
 
-// SAFETY: all is the system's allocator's.
+// SAFETY: every call is passed on to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         COUNT.fetch_add(1, Ordering::Relaxed);
-        // SAFETY: as the caller's.
+        // SAFETY: the caller keeps the same contract.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: as the caller's.
+        // SAFETY: the caller keeps the same contract.
         unsafe { System.dealloc(pointer, layout) }
     }
 }
@@ -33,7 +33,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// How often memory was asked for meanwhile.
+/// Returns how many allocations `work` makes.
 fn count(work: impl FnOnce()) -> u64 {
     let before = COUNT.load(Ordering::Relaxed);
     work();
@@ -56,11 +56,11 @@ pub(crate) fn frames_take_no_memory_once_warm() {
                 }
             };
             draw(1);
-            // A thread that had nothing to do so far is warm after its first tile.
+            // A thread that had no work so far is warm after its first tile.
             let least = (0..5).map(|_| count(|| draw(50))).min();
             assert_eq!(least, Some(0), "{name}");
         }
-        // Frames of one radius: what a batch takes does not grow with their number.
+        // Frames of one radius: the allocations of a batch do not grow with their number.
         let orbit = Animation::load("orbit")
             .unwrap()
             .with_size(640, 360)

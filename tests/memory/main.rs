@@ -6,7 +6,7 @@ mod tables;
 mod allocations;
 mod resident_memory;
 
-// One test: what is measured is the whole process's. The most memory is measured first.
+// One test, since both parts measure the whole process. The peak of memory is measured first.
 #[test]
 fn a_frame_takes_little_memory_beside_its_pixels_and_none_once_warm() {
     #[cfg(target_os = "linux")]

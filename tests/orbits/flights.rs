@@ -3,7 +3,7 @@
 use crate::reference_rays::{ReferenceRay, reference_rays};
 
 impl ReferenceRay {
-    /// The row in words, for a failing test.
+    /// Describes the row, for a failing test.
     pub(crate) fn name(&self) -> String {
         format!(
             "{}, u0 = {:?}, dudphi = {:?}, {:?} at {}",
@@ -12,7 +12,7 @@ impl ReferenceRay {
     }
 }
 
-/// The radii whose crossings the reference knows.
+/// The radii whose crossings are in the reference.
 pub(crate) const RADII: [f64; 4] = [3.0, 6.0, 12.0, 30.0];
 
 /// The reference's rays, each with all its events in the order they happen.

@@ -14,8 +14,8 @@ use crate::flights::{RADII, flights};
 use crate::known_values::{KnownValue, known_values};
 use crate::tables::table;
 
-/// Every event of every reference ray, each angle within `tolerance + 16 ε·condition` (the budgets of design sections
-/// 2 and 3; 16 ε·condition is what some units in the last place of the ray's own numbers do to the angle).
+/// Checks every event of every reference ray: each angle must be within `tolerance + 16 ε·condition`. The second term
+/// is the effect on the angle of some units in the last place of the ray's own numbers.
 fn check_against_reference(name: &str, method: &impl Orbits, tolerance: f64) {
     let (mut compared, mut worst, mut worst_at) = (0, 0.0, String::new());
     for flight in flights() {
@@ -75,7 +75,7 @@ fn angles_from_the_fine_table_equal_the_reference() {
     check_against_reference("fine", table("fine"), 1e-12);
 }
 
-/// The budgets of design section 3.
+/// The size and the accuracy that each table promises.
 #[test]
 fn tables_are_as_small_and_as_accurate_as_promised() {
     for (name, tolerance, most_bytes) in [
@@ -102,19 +102,19 @@ fn tables_are_as_small_and_as_accurate_as_promised() {
     }
 }
 
-/// The fractional part of `k` steps of the golden ratio, from ½: fills the interval evenly.
+/// The fractional part of ½ plus `k` times the golden ratio: these numbers fill the interval evenly.
 fn golden(k: u32) -> f64 {
     let x = 0.5 + f64::from(k) * 0.618_033_988_749_894_9;
     x - x.floor()
 }
 
-/// The same with the silver ratio's fraction, for a second coordinate.
+/// The same with the silver ratio, for a second coordinate.
 fn silver(k: u32) -> f64 {
     let x = 0.5 + f64::from(k) * 0.414_213_562_373_095_03;
     x - x.floor()
 }
 
-/// Inverse radii from 1e-15 to 1 − 1e-15: evenly, and crowded towards both ends and the photon sphere.
+/// Inverse radii from 1e-15 to 1 − 1e-15: spread evenly, with more of them near both ends and the photon sphere.
 fn start(k: u32) -> f64 {
     let x = golden(k);
     let tiny = libm::pow(10.0, -15.0 * silver(k));
@@ -132,7 +132,7 @@ fn critical_slope(u: f64) -> f64 {
     (u - 2.0 / 3.0).abs() * (u + 1.0 / 3.0).sqrt()
 }
 
-/// Rays about the borders of the table's charts, which lie at e² = 0.64 and 3 times 4/27 (see the page of
+/// Rays near the borders of the table's charts, which lie at e² = 0.64 and 3 times 4/27 (see the page of
 /// `table::charts`).
 fn border_rays() -> Vec<(f64, f64)> {
     let mut rays = Vec::new();
@@ -176,7 +176,7 @@ fn near_critical_rays() -> Vec<(f64, f64)> {
     rays
 }
 
-/// The extremes of both numbers, each with each.
+/// All combinations of extreme values of both numbers.
 fn extreme_rays() -> Vec<(f64, f64)> {
     let mut starts = vec![1e-100, 1e-60, 1e-30, 0.5, 2.0 / 3.0, 0.876_6, 0.877];
     for digit in 1..=15 {
@@ -255,8 +255,7 @@ const MANY_RADII: [f64; 16] = [
     1e12,
 ];
 
-/// What is wrong with a table's answer about one ray, if anything is; else its worst difference from the exact
-/// answer.
+/// Compares a table's answer about one ray with the exact one. Returns the largest difference, or what is wrong.
 fn difference(method: &impl Orbits, u: f64, w: f64) -> Result<f64, String> {
     let ray = Ray::new(u, w).unwrap();
     let events = method.follow(ray, &MANY_RADII).unwrap();
@@ -336,8 +335,8 @@ fn tables_are_accurate_for_all_other_rays() {
     check_against_exact("spread", &spread_rays());
 }
 
-/// Rays all over one chart (the page of `table::charts` says where each lies), crowded to where its errors are:
-/// beside the chart's neighbours, infinity and the horizon.
+/// Rays throughout one chart (see `table::charts`), with more of them where its errors are largest: near the chart's
+/// neighbours, infinity and the horizon.
 fn rays_of_chart(chart: &str) -> Vec<(f64, f64)> {
     let (mut rays, mut k) = (Vec::new(), 0);
     while rays.len() < 12_000 {
@@ -371,8 +370,8 @@ fn rays_of_chart(chart: &str) -> Vec<(f64, f64)> {
     rays
 }
 
-/// Every table keeps its own promise in every chart, off its grid: against the exact answer for the same orbit, so
-/// that beside the tolerance there is only rounding, 16 ε of the angle.
+/// Every table keeps its promise in every chart, between the nodes of its grid. The exact answer is for the same orbit,
+/// so that beside the tolerance only rounding is allowed: 16 ε of the angle.
 #[test]
 fn tables_are_as_accurate_as_promised_throughout_every_chart() {
     let mut broken = Vec::new();
@@ -443,7 +442,7 @@ fn exact_angles_solve_the_orbit_equation() {
     println!("{compared} angles, worst difference {worst:.3e}");
 }
 
-/// The methods whose figures are checked against those in print, with what an angle may be off by.
+/// The methods that are compared with published figures, each with its allowed error of an angle.
 fn angle_to_end(orbit: &Orbit) -> [(f64, f64); 2] {
     let lookup = table("standard").lookup();
     [(Exact.to_end(orbit), 1e-12), (lookup.to_end(orbit), 1e-9)]
@@ -710,7 +709,7 @@ fn isoradials_of_a_far_camera_are_at_the_known_impact_parameters() {
     }
 }
 
-/// Each order is in the end e^−π as thick as the one before (Ohanian 1987).
+/// In the limit each order is e^−π times as thick as the one before (Ohanian 1987).
 ///
 /// An order is thickest at its first angle, kπ; for k = 3 the circle r = 12 is there a share ε = 1e-3 farther out
 /// than critical (it is 2.1e-4 at 3½π, see `face_on_b`, and e^{π/2} times as much a quarter turn before), for each
