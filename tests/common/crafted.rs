@@ -1,11 +1,8 @@
-//! Tables' files made by hand: whole, and not what anybody generates.
-
-// Each test is a program of its own, and takes what it needs.
-#![allow(dead_code)]
+//! Table files made by hand: valid in form, with contents that no generator writes.
 
 use darkness::table::format::{MAGIC, VERSION};
 
-/// Where the format's page has the preamble's fields.
+/// Offsets of the preamble's fields, as documented in `table::format`.
 pub(crate) const VERSION_AT: usize = 8;
 pub(crate) const METADATA_LENGTH_AT: usize = 12;
 pub(crate) const METADATA_CRC_AT: usize = 16;
@@ -18,7 +15,7 @@ pub(crate) fn write_u32(bytes: &mut [u8], at: usize, value: u32) {
     bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
 }
 
-/// Makes the preamble's own checksum right again.
+/// Corrects the preamble's own checksum.
 pub(crate) fn mend_preamble(bytes: &mut [u8]) {
     let crc = crc32fast::hash(&bytes[..PREAMBLE_CRC_AT]);
     write_u32(bytes, PREAMBLE_CRC_AT, crc);

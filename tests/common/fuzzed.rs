@@ -1,10 +1,11 @@
-//! What must hold of any bytes that somebody takes for a table, a scene, a range of frames or a list of rays: they are read or refused,
-//! and what is read can be worked with. Fuzzers run these on bytes of their own, tests on those that were kept.
+//! What must hold of any bytes that are read as a table, a scene, a range of frames or a list of rays: they are
+//! accepted or refused, and what is accepted can be used. Fuzzers run these functions on bytes of their own,
+//! `tests/files/corpora.rs` on the bytes that were kept.
 
-// Each program takes what it needs.
+// Each fuzzing program uses one of these functions.
 #![allow(dead_code)]
 
-mod crafted;
+pub(crate) mod crafted;
 
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
@@ -21,7 +22,8 @@ use darkness::render::{coverage, mask};
 use darkness::scene::{Animation, Scene, View};
 use darkness::table::{Spec, Table};
 
-/// The bytes as a table's file: as they are, and with every checksum and length made right, so that what they guard is read.
+/// Reads the bytes as a table's file: as they are, and with all checksums and lengths corrected, so that the checks
+/// behind these are reached.
 pub(crate) fn table(bytes: &[u8]) {
     let mended = mended(bytes);
     let both: [&[u8]; 2] = [bytes, &mended];
@@ -32,7 +34,7 @@ pub(crate) fn table(bytes: &[u8]) {
     }
 }
 
-/// The bytes with every length and checksum of a table's file made to fit.
+/// Returns the bytes with all lengths and checksums of a table's file corrected.
 fn mended(bytes: &[u8]) -> Vec<u8> {
     let Some((preamble, rest)) = bytes.split_at_checked(METADATA_AT) else {
         return bytes.to_vec();
@@ -58,7 +60,7 @@ fn use_table(table: &Table) {
             })
         ));
     }
-    // Curves through noise have as many nodes as there may be, some seconds' work: for one table of many.
+    // Curves through noise get the largest number of nodes, which takes seconds: they are drawn for one table in 256.
     let sum = crc32fast::hash(table.bytes()) as usize;
     if sum.is_multiple_of(256) {
         let name = ["classic", "inside", "edge-on"][sum / 256 % 3];
@@ -91,7 +93,8 @@ fn draw(scene: &Scene, angles: &impl SweptAngles) {
     assert_eq!(coverage::render(&view, &curves).unwrap().len(), pixels);
 }
 
-/// The bytes as a scene's file. One that is accepted reads back the same from its own form, and can be drawn.
+/// Reads the bytes as a scene file. A scene that is accepted is unchanged when it is written and read again, and can be
+/// drawn.
 pub(crate) fn scene(bytes: &[u8]) {
     let Ok(text) = str::from_utf8(bytes) else {
         return;
@@ -119,7 +122,7 @@ pub(crate) fn scene(bytes: &[u8]) {
     }
 }
 
-/// What says why something is refused: not empty, not endless, and nothing in it that a terminal obeys.
+/// Asserts that a message is not empty, not too long, and has no control characters.
 fn sentence(error: &impl std::error::Error) {
     let message = error.to_string();
     assert!(!message.trim().is_empty());
@@ -133,7 +136,7 @@ fn draft() -> &'static Table {
     DRAFT.get_or_init(|| Table::generate(&Spec::draft()).unwrap())
 }
 
-/// The bytes as a range of frames: its numbers rise, are counted, and are those of its own form.
+/// Reads the bytes as a range of frames: its numbers rise, their count is right, and writing and reading keeps them.
 pub(crate) fn frames(bytes: &[u8]) {
     const MOST: usize = 10_000;
     let Ok(text) = str::from_utf8(bytes) else {
@@ -159,7 +162,7 @@ pub(crate) fn frames(bytes: &[u8]) {
     if numbers.len() < MOST {
         assert_eq!(range.count(), numbers.len() as u64);
         assert_eq!(numbers.last(), Some(&range.last()));
-        // By its definition.
+        // By the definition of a range.
         let all = (1..=range.last().min(MOST as u32)).filter(|&number| range.contains(number));
         assert!(
             all.eq(numbers
@@ -170,7 +173,7 @@ pub(crate) fn frames(bytes: &[u8]) {
     }
 }
 
-/// The bytes as a list of rays: each line is a ray or a sentence, and each ray ends.
+/// Reads the bytes as a list of rays: each line gives a ray or an error, and each ray ends.
 pub(crate) fn rays(bytes: &[u8]) {
     let mut rays = match RayReader::new(bytes, "list".into()) {
         Ok(rays) => rays,

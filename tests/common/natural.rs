@@ -1,5 +1,5 @@
-//! Exact arithmetic on the squares and cubes of floating-point numbers: signs that no rounding can turn, from nothing
-//! of the program's own code.
+//! Exact arithmetic on the squares and cubes of floating-point numbers. It gives signs that no rounding can change, and
+//! shares no code with the library.
 
 use std::cmp::Ordering;
 
@@ -36,7 +36,7 @@ impl Natural {
         Self::trimmed(digits)
     }
 
-    /// self − other, of which other is the smaller.
+    /// self − other; other must not be larger.
     fn minus(&self, other: &Self) -> Self {
         let mut borrow = 0;
         let mut digits = Vec::new();
@@ -69,7 +69,7 @@ impl Natural {
         by_length.then_with(|| self.0.iter().rev().cmp(other.0.iter().rev()))
     }
 
-    /// The number times `2^exponent`, right to 2⁻⁵² of itself: from its three highest digits, 65 bits or more.
+    /// The number times `2^exponent`, to a relative error of 2⁻⁵², from its three highest digits (65 bits or more).
     fn scaled(&self, exponent: i32) -> f64 {
         let count = self.0.len();
         let lowest = count.saturating_sub(3);
@@ -128,12 +128,12 @@ pub(crate) fn distance_from_critical(u: f64, w: f64) -> f64 {
     sum(&[(27, w, 2), (27, u, 2), (-27, u, 3), (-4, 1.0, 0)]) / 27.0
 }
 
-/// `(du/dφ)²` at inverse radius `at` on the orbit that starts at (u, w); negative where the orbit does not come.
+/// `(du/dφ)²` at inverse radius `at` on the orbit that starts at (u, w); negative where the orbit does not reach it.
 pub(crate) fn squared_slope(u: f64, w: f64, at: f64) -> f64 {
     sum(&[(1, w, 2), (1, u, 2), (-1, u, 3), (-1, at, 2), (1, at, 3)])
 }
 
-/// The least number of at least 0 that as a slope at u makes `Δ > 0`: the last place at which a ray is captured.
+/// The smallest non-negative slope at u for which `Δ > 0`: the boundary between capture and escape.
 pub(crate) fn critical_slope(u: f64) -> f64 {
     let (mut below, mut above) = (0_u64, 1.0_f64.to_bits());
     while above - below > 1 {

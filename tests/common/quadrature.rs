@@ -1,5 +1,5 @@
-//! Swept angles by numerical quadrature: no elliptic integral, no root in trigonometric form, nothing of the program's
-//! own code, and Δ in exact arithmetic. Right to some 1e-14 of the angle.
+//! Swept angles by numerical quadrature, with Δ in exact arithmetic. It uses no elliptic integrals, no trigonometric
+//! roots and no code of the library. The relative error is about 1e-14.
 //!
 //! With `x = u − 2/3` the integrand is `1/√P`, `P = x²(1 + x) + Δ`. Substitutions that take P's two nearest roots into
 //! the variable of integration leave one square root, of the distance from the farthest root:
@@ -9,16 +9,13 @@
 //!   `2 ∫ dt/√(x + z)` from the turning point.
 //! * e² small, roots u1 < 0 < u2 < u3 of `u³ − u² + e²`, `u = u2 − (u2 − u1) sin² t`: `2 ∫ dt/√(u3 − u)`.
 
-// Each test is a program of its own, and takes what it needs.
-#![allow(dead_code)]
-
 use std::sync::OnceLock;
 
 use darkness::orbit::{Event, EventKind};
 
-use super::natural;
+use crate::natural;
 
-/// A ray, its numbers taken for exact.
+/// A ray whose two numbers are taken as exact.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TrueRay {
     u: f64,
@@ -48,10 +45,10 @@ impl TrueRay {
         self.angle_with(event, 0.0)
     }
 
-    /// The same of a ray with a Δ larger by `shift`.
+    /// The same for a ray whose Δ is larger by `shift`.
     fn angle_with(&self, event: &Event, shift: f64) -> f64 {
         let delta = self.delta + shift;
-        // Of an infinite radius too.
+        // Also for an infinite radius.
         let end = 1.0 / event.radius;
         if delta > 0.0 {
             return monotone(delta, from_photon_sphere(self.u), from_photon_sphere(end)).abs();
@@ -81,7 +78,7 @@ impl TrueRay {
     /// `|∂angle/∂ln dudphi| + |∂angle/∂ln u0|`: with Δ's derivatives `2w` and `2u − 3u²`, and the start's own part of
     /// the path.
     pub(crate) fn condition(&self, event: &Event) -> f64 {
-        // So small a share that the difference is right to some digits, and stays on this side of critical.
+        // Small enough for some digits of the difference, and to stay on this side of critical.
         let step = 1e-4 * self.delta.abs().min(self.w * self.w);
         let by_delta =
             (self.angle_with(event, step) - self.angle_with(event, -step)) / (2.0 * step);
@@ -91,16 +88,16 @@ impl TrueRay {
     }
 }
 
-/// `u − 2/3`: 2/3 is the number of this name and ε/6.
+/// `u − 2/3`, where 2/3 is its floating-point number plus ε/6.
 fn from_photon_sphere(u: f64) -> f64 {
     (u - 2.0 / 3.0) - f64::EPSILON / 6.0
 }
 
-/// A root by Newton's method, from a place from where it converges.
+/// A root by Newton's method, from a start from which it converges.
 fn newton(mut x: f64, mut step: impl FnMut(f64) -> f64) -> f64 {
     for _ in 0..100 {
         let next = x - step(x);
-        // The last steps go to and fro between neighbours.
+        // The last steps alternate between neighbouring numbers.
         if (next - x).abs() <= 2.0 * f64::EPSILON * next.abs() {
             return next;
         }
@@ -135,7 +132,7 @@ fn from_turning_point(delta: f64, x: f64, squared: f64) -> f64 {
     let (periapsis, apoapsis) = (turn(-1.0), turn(1.0));
     let z = 1.0 - periapsis + apoapsis;
     let apart = periapsis + apoapsis;
-    // P = y² (δ + y²)(x + z) with y the distance from the turning point: by whichever factor keeps its digits.
+    // P = y² (δ + y²)(x + z) with y the distance from the turning point: divide by the factor that keeps its digits.
     let beyond = if x < 0.0 { apoapsis - x } else { x + periapsis };
     let y2 = squared / (beyond * (x + z));
     let end = libm::asinh((y2 / apart).sqrt());

@@ -1,4 +1,4 @@
-//! The tables that come with the program, each made once.
+//! The tables that come with the program, each generated once a process.
 
 use std::sync::OnceLock;
 

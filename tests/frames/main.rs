@@ -1,0 +1,28 @@
+//! Frames: each pixel against its own exact ray, against reference pictures computed by other means, and against the
+//! same picture drawn in another way.
+
+#[path = "../common/natural.rs"]
+mod natural;
+#[path = "../common/process.rs"]
+mod process;
+#[path = "../common/quadrature.rs"]
+mod quadrature;
+#[path = "../common/tables.rs"]
+mod tables;
+
+mod any_scene;
+mod drawn;
+mod methods;
+mod shares;
+
+mod batches;
+mod coverage;
+mod coverage_frames;
+mod coverage_rings;
+mod extreme_cameras;
+mod masks;
+mod needs;
+mod photon_rings;
+mod symmetry;
+mod tiles;
+mod zoomed_edges;

@@ -1,0 +1,196 @@
+//! Guards against curves that are less accurate than they promise, and against more work than the promise needs. Edges
+//! are compared with their exact places over random scenes. Choices for a tolerance eight times as large must fail
+//! somewhere.
+
+use darkness::isoradial::{Edge, Isoradials, Sight, height_at};
+use darkness::orbit::exact::Exact;
+use darkness::render::needs::Needs;
+use darkness::scene::{Scene, View};
+use darkness::table::Spec;
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
+
+use crate::tables::table;
+
+/// How far the edges of `curves` are from where they are, at most, in pixels: at places between the nodes of every
+/// quarter turn, where the picture of `sight` shows them.
+fn displacement(sight: &Sight, curves: &Isoradials) -> f64 {
+    /// No number of nodes has a node at many of so many places.
+    const PLACES: u32 = 97;
+    let (least, most) = sight.window.cotangent;
+    let first_angle = |cotangent: f64| core::f64::consts::FRAC_PI_2 - libm::atan(cotangent);
+    let (from, to) = (first_angle(most), first_angle(least));
+    let mut worst: f64 = 0.0;
+    for order in curves.orders() {
+        for k in 0..PLACES {
+            let first = from + (to - from) * (f64::from(k) + 0.5) / f64::from(PLACES);
+            let angle = first + f64::from(order.number()) * core::f64::consts::PI;
+            for edge in [Edge::Inner, Edge::Outer] {
+                let drawn = curves.height(order.number(), edge, first);
+                let truth = height_at(sight, edge, angle, &Exact);
+                // A quarter turn that is left out has no edge in the picture.
+                let shown = drawn.map_or(f64::NAN, |drawn| shown(sight, drawn, truth));
+                worst = worst.max(shown);
+            }
+        }
+    }
+    worst
+}
+
+/// How far two rays are apart in the picture, in pixels: the part of the way that the picture shows.
+fn shown(sight: &Sight, a: f64, b: f64) -> f64 {
+    let (low, high) = sight.window.kappa;
+    let critical = sight.critical();
+    let within = |h: f64| h.clamp(low - critical, high - critical);
+    sight.pixels((within(a), within(b)))
+}
+
+/// The thickness of an order in the picture, exactly, in pixels.
+fn thickness(sight: &Sight, order: u32) -> f64 {
+    let (least, most) = sight.window.cotangent;
+    let first_angle = |cotangent: f64| core::f64::consts::FRAC_PI_2 - libm::atan(cotangent);
+    let (from, to) = (first_angle(most), first_angle(least));
+    (0..=32).fold(0.0, |thickest: f64, k| {
+        let first = from + (to - from) * f64::from(k) / 32.0;
+        let angle = first + f64::from(order) * core::f64::consts::PI;
+        let [inner, outer] =
+            [Edge::Inner, Edge::Outer].map(|edge| height_at(sight, edge, angle, &Exact));
+        thickest.max(shown(sight, inner, outer))
+    })
+}
+
+fn curves_from(sight: &Sight, table_name: Option<&str>) -> Isoradials {
+    match table_name {
+        Some(name) => Isoradials::new(sight, &table(name).lookup()),
+        None => Isoradials::new(sight, &Exact),
+    }
+}
+
+/// Cameras near and far, lenses long and wide, aimed at the hole's neighbourhood or off it.
+fn any_scene() -> impl Strategy<Value = Scene> {
+    (
+        (0.02..9.0_f64, 0.0..90.0_f64, -8.0..8.0_f64, -8.0..8.0_f64),
+        (-2.5..0.2_f64, 3.0..8.0_f64, -3.0..4.0_f64),
+        prop_oneof![
+            Just((1920_u32, 1080_u32)),
+            Just((640, 360)),
+            Just((1, 1)),
+            Just((3000, 20))
+        ],
+        -5.0..-0.5_f64,
+    )
+        .prop_filter_map(
+            "a scene",
+            |((log_r, height, aim_y, aim_z), (fov, inner, width), size, tolerance)| {
+                let r = libm::exp(log_r);
+                let (sine, cosine) = (
+                    libm::sin(height.to_radians()),
+                    libm::cos(height.to_radians()),
+                );
+                // From a lens that shows a share of the hole to one that shows the sky.
+                let fov = (libm::exp10(fov) * 2.0 * libm::atan(20.0 / r).to_degrees()).min(170.0);
+                let text = format!(
+                    "[camera]\nposition = [{:e}, 0, {:e}]\nfocus = [0, {aim_y}, {aim_z}]\nup = [0.1, 0.2, 1]\nfov = {fov:e}\n\
+                     [disk]\ninner = {inner}\nouter = {}\n[image]\nwidth = {}\nheight = {}\ntolerance = {:e}\n",
+                    r * cosine,
+                    r * sine,
+                    inner + libm::exp10(width),
+                    size.0,
+                    size.1,
+                    libm::exp10(tolerance),
+                );
+                Scene::from_toml(&text).ok()
+            },
+        )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn edges_are_where_they_are_promised(scene in any_scene()) {
+        let needs = Needs::new(&scene, &View::new(&scene));
+        let sight = &needs.sight;
+        let curves = curves_from(sight, needs.table().map(|candidate| candidate.name));
+        let (promised, tolerance) = (curves.error().total(), scene.tolerance());
+        prop_assert!(promised <= tolerance, "{promised:e} promised where {tolerance:e} is asked for");
+        let off = displacement(sight, &curves);
+        prop_assert!(off <= promised, "{off:e} where {promised:e} is promised");
+        if let Some(thin) = curves.left_out() {
+            let left_out = thickness(sight, thin.order);
+            prop_assert!(left_out <= tolerance, "order {} is {left_out:e} pixels thick", thin.order);
+        }
+    }
+}
+
+/// Scenes that are the same in every run.
+fn scenes(count: usize) -> Vec<Scene> {
+    let mut runner = TestRunner::deterministic();
+    let mut scene = || any_scene().new_tree(&mut runner).unwrap().current();
+    (0..count).map(|_| scene()).collect()
+}
+
+/// What eight times the tolerance leaves of each choice breaks the tolerance itself in some scenes, so that none is
+/// padded by as much: the nodes.
+#[test]
+fn nodes_for_eight_times_the_tolerance_are_too_few() {
+    let mut broken = 0;
+    for scene in scenes(60) {
+        let sight = Needs::new(&scene, &View::new(&scene)).sight;
+        let coarser = Sight {
+            tolerance: 8.0 * sight.tolerance,
+            ..sight
+        };
+        // Exact angles: what is off is the interpolation.
+        let curves = Isoradials::new(&coarser, &Exact);
+        broken += usize::from(displacement(&sight, &curves) > sight.tolerance);
+    }
+    println!("broken in {broken} of 60 scenes");
+    assert!(broken > 0);
+}
+
+/// The same for the table: with the tolerance for which it is just enough divided by eight, its edges are off by more
+/// than that in some scene.
+#[test]
+fn tables_for_eight_times_the_tolerance_are_too_coarse() {
+    for name in ["draft", "standard"] {
+        let promised = Spec::named(name).unwrap().tolerance;
+        let mut most: f64 = 0.0;
+        for scene in scenes(60) {
+            let needs = Needs::new(&scene, &View::new(&scene));
+            // Just enough: the displacement is half the tolerance.
+            let enough = 2.0 * needs.sensitivity * promised;
+            // Finer nodes than anybody needs: what is off is the table.
+            let sight = Sight {
+                tolerance: 1e-3 * enough,
+                ..needs.sight
+            };
+            if enough > 0.0 {
+                let curves = Isoradials::new(&sight, &table(name).lookup());
+                most = most.max(displacement(&sight, &curves) / (enough / 8.0));
+            }
+        }
+        println!("{name}: up to {most} times the tolerance");
+        assert!(most > 1.0, "{name}: at most {most} of the tolerance");
+    }
+}
+
+/// The same for the orders: the first that eight times the tolerance leaves out is thicker than the tolerance.
+#[test]
+fn orders_for_eight_times_the_tolerance_are_too_few() {
+    let mut broken = 0;
+    for scene in scenes(60) {
+        let sight = Needs::new(&scene, &View::new(&scene)).sight;
+        let coarser = Sight {
+            tolerance: 8.0 * sight.tolerance,
+            ..sight
+        };
+        let left_out = Isoradials::new(&coarser, &Exact).left_out();
+        broken += usize::from(
+            left_out.is_some_and(|thin| thickness(&sight, thin.order) > sight.tolerance),
+        );
+    }
+    println!("broken in {broken} of 60 scenes");
+    assert!(broken > 0);
+}

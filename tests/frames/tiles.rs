@@ -1,0 +1,72 @@
+//! Guards against a tile that is filled although one of its pixels differs: whole frames against the same frames with
+//! every pixel asked by itself, over random scenes.
+
+use darkness::isoradial::{Isoradials, Sight};
+use darkness::render::mask::{render, render_every_pixel};
+use darkness::scene::{Scene, View, builtins};
+use proptest::prelude::*;
+
+use crate::tables::table;
+
+fn frames(scene: &Scene) -> (Vec<u8>, Vec<u8>) {
+    let view = View::new(scene);
+    let sight = Sight::new(scene, &view, scene.tolerance());
+    let curves = Isoradials::new(&sight, &table("standard").lookup());
+    (
+        render(&view, &curves).unwrap(),
+        render_every_pixel(&view, &curves).unwrap(),
+    )
+}
+
+#[test]
+fn tiles_change_no_pixel_of_the_built_in_scenes() {
+    for builtin in builtins() {
+        let scene = Scene::builtin(builtin.name()).unwrap();
+        // Sizes that no tile divides.
+        for (width, height) in [(641, 359), (67, 1), (1, 131)] {
+            let (tiled, single) = frames(&scene.with_size(width, height).unwrap());
+            assert!(tiled == single, "{} at {width} × {height}", builtin.name());
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn tiles_change_no_pixel_of_any_scene(
+        log_r in 0.01..6.0_f64,
+        direction in (-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64),
+        // Half of the cameras in the disk's plane, where φ₁ jumps, or nearly so.
+        flat in prop_oneof![Just(0.0), Just(1e-9), Just(1.0), Just(1.0)],
+        aim in (-6.0..6.0_f64, -6.0..6.0_f64, -6.0..6.0_f64),
+        fov_log in -3.0..2.2_f64,
+        // From a thread to a plain.
+        width_log in -6.0..2.5_f64,
+        aimed in 0..4_u8,
+    ) {
+        let r = libm::exp(log_r);
+        let (x, y, z) = (direction.0, direction.1, direction.2 * flat);
+        let length = (x * x + y * y + z * z).sqrt();
+        prop_assume!(length > 0.1);
+        let place = |factor: f64| format!("[{:e}, {:e}, {:e}]", factor * x / length, factor * y / length, factor * z / length);
+        let focus = match aimed {
+            0 => place(3.0 * r),
+            // The photon ring's neighbourhood, through a lens of its own.
+            1 => format!("[{}, {}, {}]", 2.6 * -y / length, 2.6 * x / length, 0.1 * aim.2),
+            _ => format!("[{}, {}, {}]", aim.0, aim.1, aim.2),
+        };
+        let outer = 3.0 + libm::exp(width_log * core::f64::consts::LN_10);
+        let text = format!(
+            "[camera]\nposition = {}\nfocus = {focus}\nup = [0.1, 0.2, 1.0]\nfov = {}\n[disk]\ninner = 3.0\nouter = {outer}\n[image]\nwidth = 150\nheight = 90\n",
+            place(r),
+            libm::exp(fov_log * core::f64::consts::LN_10).min(170.0),
+        );
+        // What stands in the disk or looks nowhere is refused by the scene itself.
+        if let Ok(scene) = Scene::from_toml(&text) {
+            let (tiled, single) = frames(&scene);
+            let differing = tiled.iter().zip(&single).filter(|(a, b)| a != b).count();
+            prop_assert_eq!(differing, 0, "{}", text);
+        }
+    }
+}

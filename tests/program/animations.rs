@@ -1,0 +1,397 @@
+//! Guards against animations that are drawn otherwise than asked for, that go on after an error, or whose errors do not
+//! say what is wrong.
+#![cfg(unix)]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::process::Command;
+
+use tempfile::tempdir;
+
+use crate::harness::{PATTERN, done, files, refused, run, with_animation};
+
+#[test]
+fn frames_are_numbered_files_that_record_what_they_were_made_of() {
+    let folder = with_animation(12);
+    let here = folder.path();
+    let (_, stderr) = done(here, &["render", "small.toml", "-o", PATTERN]);
+    assert!(
+        stderr.contains("12 frames of 96 × 54") && stderr.contains("frames/s"),
+        "{stderr}"
+    );
+    let smooth = files(&here.join("out"));
+    let names: Vec<_> = (1..=12)
+        .map(|number| format!("f_{number:04}.png"))
+        .collect();
+    assert_eq!(smooth.keys().cloned().collect::<Vec<_>>(), names);
+    done(
+        here,
+        &[
+            "render",
+            "small.toml",
+            "-o",
+            "hard/%03d.png",
+            "--antialias",
+            "false",
+            "--frames",
+            "2-12x5",
+        ],
+    );
+    let hard = files(&here.join("hard"));
+    assert_eq!(
+        hard.keys().map(String::as_str).collect::<Vec<_>>(),
+        ["002.png", "007.png", "012.png"]
+    );
+    let texts = |file: &[u8]| {
+        let reader = png::Decoder::new(io::Cursor::new(file))
+            .read_info()
+            .unwrap();
+        let info = reader.info();
+        let texts = info.uncompressed_latin1_text.iter();
+        let texts: BTreeMap<_, _> = texts
+            .map(|text| (text.keyword.clone(), text.text.clone()))
+            .collect();
+        (info.bit_depth as u8, texts)
+    };
+    let (depth, of_smooth) = texts(&smooth["f_0007.png"]);
+    assert_eq!((depth, &*of_smooth["darkness:frame"]), (8, "7"));
+    assert_eq!(
+        of_smooth["Software"],
+        concat!("darkness ", env!("CARGO_PKG_VERSION"))
+    );
+    assert_eq!(of_smooth["darkness:scene"].len(), 64);
+    let (depth, of_hard) = texts(&hard["007.png"]);
+    assert_eq!((depth, &*of_hard["darkness:frame"]), (1, "7"));
+    assert_ne!(of_hard["darkness:scene"], of_smooth["darkness:scene"]);
+    // The output of `sha256sum` for the table's file.
+    let sums = Command::new("sha256sum")
+        .arg(here.join("tables/draft.table"))
+        .output();
+    if let Ok(sums) = sums {
+        let sum = String::from_utf8(sums.stdout).unwrap();
+        assert!(
+            sum.starts_with(&of_smooth["darkness:table"]),
+            "{sum} {of_smooth:?}"
+        );
+    }
+    // Hard and smooth frames show the same camera.
+    let pixels = |file: &[u8]| image::load_from_memory(file).unwrap().into_luma8();
+    let (smooth, hard) = (pixels(&smooth["f_0007.png"]), pixels(&hard["007.png"]));
+    let apart = smooth
+        .pixels()
+        .zip(hard.pixels())
+        .filter(|(a, b)| a.0[0].abs_diff(b.0[0]) > 150);
+    assert!(apart.count() < 40 && hard.pixels().any(|pixel| pixel.0[0] == 255));
+}
+
+#[test]
+fn any_chunks_on_any_threads_give_the_same_files() {
+    let folder = with_animation(30);
+    let here = folder.path();
+    done(
+        here,
+        &[
+            "render",
+            "small.toml",
+            "-o",
+            "all/f_####.png",
+            "--threads",
+            "1",
+        ],
+    );
+    for (frames, threads) in [
+        ("21-30", "2"),
+        ("1-30x3", "3"),
+        ("2-20", "2"),
+        ("1-30", "1"),
+    ] {
+        let args = [
+            "render",
+            "small.toml",
+            "-o",
+            "some/f_####.png",
+            "--threads",
+            threads,
+            "--frames",
+            frames,
+        ];
+        done(here, &args);
+    }
+    assert!(files(&here.join("all")) == files(&here.join("some")));
+    let film = |threads: &str| {
+        let args = [
+            "render",
+            "small.toml",
+            "-o",
+            "-",
+            "--format",
+            "raw",
+            "--threads",
+            threads,
+        ];
+        done(here, &args).0
+    };
+    let raw = film("1");
+    assert_eq!(raw.len(), 30 * 96 * 54);
+    assert!(raw == film("3"));
+    let of_files: Vec<u8> = files(&here.join("all"))
+        .values()
+        .flat_map(|file| {
+            image::load_from_memory(file)
+                .unwrap()
+                .into_luma8()
+                .into_raw()
+        })
+        .collect();
+    assert!(raw == of_files);
+}
+
+#[test]
+fn a_film_consists_of_its_header_and_its_frames() {
+    let folder = with_animation(6);
+    let here = folder.path();
+    let (raw, _) = done(
+        here,
+        &["render", "small.toml", "-o", "-", "--format", "raw"],
+    );
+    let (film, _) = done(
+        here,
+        &["render", "small.toml", "-o", "-", "--format", "y4m"],
+    );
+    let header = b"YUV4MPEG2 W96 H54 F24:1 Ip A1:1 Cmono XCOLORRANGE=FULL\n";
+    let mut expected = header.to_vec();
+    for frame in raw.chunks(96 * 54) {
+        expected.extend(b"FRAME\n");
+        expected.extend(frame);
+    }
+    assert!(film == expected);
+    done(here, &["render", "small.toml", "-o", "a.y4m"]);
+    done(
+        here,
+        &["render", "small.toml", "-o", "some.raw", "--frames", "2-3"],
+    );
+    assert!(fs::read(here.join("a.y4m")).unwrap() == film);
+    assert!(fs::read(here.join("some.raw")).unwrap() == raw[96 * 54..3 * 96 * 54]);
+    done(
+        here,
+        &["render", "small.toml", "-o", "/dev/null", "--format", "raw"],
+    );
+    assert!(fs::metadata("/dev/null").is_ok_and(|kind| !kind.is_file()));
+    // A still picture is a film of one frame.
+    let (still, _) = done(
+        here,
+        &[
+            "render", "classic", "--size", "96x54", "-o", "-", "--format", "y4m",
+        ],
+    );
+    assert!(still.starts_with(b"YUV4MPEG2 W96") && still.len() == header.len() + 6 + 96 * 54);
+}
+
+#[test]
+fn an_invalid_frame_does_not_affect_the_others() {
+    let folder = with_animation(101);
+    let here = folder.path();
+    // The camera reaches its focus at frame 51, the middle one.
+    let toml = fs::read_to_string(here.join("small.toml")).unwrap();
+    let key = |frame: u32, focus: &str| {
+        format!("[[animation.keyframe]]\nframe = {frame}\nfocus = {focus}\n")
+    };
+    let toml = toml
+        .replace("[0.0, 360.0]", "0.0")
+        .replace("inclination = 80.0", "inclination = 90.0");
+    let keys = [
+        key(50, "[0, 0, 0]"),
+        key(51, "[30, 0, 0]"),
+        key(52, "[0, 0, 0]"),
+    ];
+    fs::write(here.join("bad.toml"), format!("{toml}\n{}", keys.concat())).unwrap();
+    done(
+        here,
+        &["render", "bad.toml", "-o", PATTERN, "--frames", "1-2,101"],
+    );
+    refused(
+        here,
+        &["render", "bad.toml", "-o", PATTERN],
+        1,
+        &["frame 51", "camera.focus"],
+    );
+}
+
+#[test]
+fn misuse_is_reported_before_anything_is_done() {
+    let folder = with_animation(20);
+    let here = folder.path();
+    let misused = |args: &[&str], words: &[&str]| {
+        refused(here, &[&["render"], args].concat(), 2, words);
+    };
+    misused(
+        &["small.toml", "-o", "f.png"],
+        &["f.png", "20 frames", "####", "--frames", "y4m"],
+    );
+    misused(&["small.toml", "-o", "-"], &["pipe", "--format y4m"]);
+    misused(&["small.toml", "-o", "f_#.y4m"], &["f_#.y4m", "film"]);
+    misused(&["small.toml", "-o", "#/f.png"], &["folder's"]);
+    misused(&["small.toml", "-o", "#_%d.png"], &["two places"]);
+    misused(
+        &["small.toml", "-o", "tables"],
+        &["tables is a folder", "tables/small_####.png"],
+    );
+    misused(&["small.toml", "-o", "new/"], &["new/small_####.png"]);
+    misused(&["small.toml", "-o", "f_##.gif"], &[".png, .y4m or .raw"]);
+    misused(&["small.toml", "--frames", "19-21"], &["19-21", "1 to 20"]);
+    misused(
+        &["small.toml", "--frames", "5-1"],
+        &["5-1", "before it begins"],
+    );
+    misused(&["small.toml", "--frames", "0-4"], &["0-4", "from 1"]);
+    misused(&["small.toml", "--frames", "1..4"], &["1..4", "1-240"]);
+    misused(&["small.toml", "--frames", "1-4294967295"], &["1 to 20"]);
+    misused(&["classic", "--frames", "2"], &["no frame 2"]);
+    misused(
+        &["small.toml", "--explain", "--frames", "2-3"],
+        &["--explain", "one frame"],
+    );
+    misused(
+        &["small.toml", "--require-table", "--method", "exact"],
+        &["--require-table"],
+    );
+    misused(&["small.toml", "--progress", "loud"], &["openjd", "plain"]);
+    let (_, stderr) = run(here, &["job", "openjd", "classic"]);
+    assert!(stderr.contains("no [animation]"), "{stderr}");
+    let left: Vec<_> = files(here).into_keys().collect();
+    assert_eq!(left, ["small.toml", "tables"]);
+}
+
+#[test]
+fn a_camera_path_through_the_disk_or_hole_is_refused_before_the_first_frame() {
+    let folder = with_animation(40);
+    let here = folder.path();
+    let toml = fs::read_to_string(here.join("small.toml")).unwrap();
+    for (path, words) in [
+        (
+            "radius = [30, 0.9], inclination = 0",
+            ["frame 39", "horizon"],
+        ),
+        ("radius = 6, inclination = 80", ["frame ", "disk's matter"]),
+    ] {
+        let bad = toml.replace("radius = 30.0, inclination = 80.0", path);
+        fs::write(here.join("bad.toml"), bad).unwrap();
+        refused(here, &["render", "bad.toml", "-o", PATTERN], 1, &words);
+        assert!(!here.join("out").exists());
+    }
+}
+
+#[test]
+fn a_dry_run_lists_frames_and_files_and_draws_nothing() {
+    let folder = with_animation(5);
+    let here = folder.path();
+    done(
+        here,
+        &["render", "small.toml", "-o", PATTERN, "--frames", "2"],
+    );
+    let before = files(&here.join("out"));
+    let (list, _) = done(
+        here,
+        &[
+            "render",
+            "small.toml",
+            "-o",
+            PATTERN,
+            "--frames",
+            "1-3",
+            "--dry-run",
+        ],
+    );
+    let list = String::from_utf8(list).unwrap();
+    assert_eq!(
+        list,
+        "1\tto draw\tout/f_0001.png\n2\tfinished\tout/f_0002.png\n3\tto draw\tout/f_0003.png\n"
+    );
+    assert!(files(&here.join("out")) == before);
+    // No table is made either.
+    let other = tempdir().unwrap();
+    let (list, _) = done(
+        other.path(),
+        &["render", "orbit", "--frames", "7", "--dry-run"],
+    );
+    assert_eq!(list, b"7\tto draw\torbit_0007.png\n");
+    assert!(files(other.path()).is_empty());
+}
+
+#[test]
+fn a_worker_makes_no_table_unless_asked_to() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    let args = [
+        "render",
+        "orbit",
+        "--size",
+        "96x54",
+        "--frames",
+        "1",
+        "--require-table",
+        "-o",
+        "a_#.png",
+    ];
+    refused(
+        here,
+        &args,
+        1,
+        &["tables/draft.table", "darkness table draft"],
+    );
+    refused(
+        here,
+        &[&args[..], &["--table", "x.table"]].concat(),
+        1,
+        &["x.table"],
+    );
+    assert!(files(here).is_empty());
+    done(here, &["table", "draft"]);
+    done(here, &args);
+}
+
+#[test]
+fn progress_is_reported_in_the_form_that_is_asked_for() {
+    let folder = with_animation(30);
+    let here = folder.path();
+    let stderr = |progress: &[&str]| {
+        let args = [
+            &["render", "small.toml", "-o", PATTERN, "--overwrite"],
+            progress,
+        ]
+        .concat();
+        done(here, &args).1
+    };
+    // Within the first second only the last line is printed.
+    let openjd = stderr(&["--progress", "openjd"]);
+    let lines: Vec<_> = openjd.lines().collect();
+    assert!(lines.contains(&"openjd_progress: 100.0"), "{openjd}");
+    assert!(
+        lines
+            .iter()
+            .any(|line| line.starts_with("openjd_status: 30 of 30 frames, ")),
+        "{openjd}"
+    );
+    for how in ["auto", "plain", "none"] {
+        let text = stderr(&["--progress", how]);
+        assert_eq!(text.lines().count(), 1, "{text}");
+    }
+    assert_eq!(stderr(&["--quiet"]), "");
+    let (_, failed) = run(
+        here,
+        &[
+            "render",
+            "small.toml",
+            "--frames",
+            "99",
+            "--progress",
+            "openjd",
+        ],
+    );
+    assert!(failed.contains("openjd_fail: "), "{failed}");
+    let timings = stderr(&["--timings"]);
+    for part in ["curves", "render", "encode", "write", "frames/s"] {
+        assert!(timings.contains(part), "{timings}");
+    }
+}

@@ -1,0 +1,200 @@
+//! `darkness render` of one picture.
+
+use std::fs;
+
+use darkness::scene::builtins;
+use tempfile::tempdir;
+
+use super::SMALL;
+use crate::harness::{done, listing, printed, refused, with_draft};
+
+#[test]
+fn render_works_at_once_in_an_empty_folder_and_leaves_nothing_else() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    let (stdout, stderr) = done(here, &["render"]);
+    assert!(stdout.is_empty());
+    for words in [
+        "tables/standard.table is not there yet",
+        "classic.png: 1920 × 1080, table standard (error ",
+    ] {
+        assert!(stderr.contains(words), "{stderr}");
+    }
+    assert_eq!(listing(here), ["classic.png", "tables"]);
+    assert_eq!(listing(&here.join("tables")), ["standard.table"]);
+    let picture = image::open(here.join("classic.png")).unwrap().into_luma8();
+    assert_eq!(picture.dimensions(), (1920, 1080));
+    let white = picture.pixels().filter(|pixel| pixel.0 == [255]).count();
+    assert!(
+        (200_000..1_600_000).contains(&white),
+        "{white} white pixels"
+    );
+
+    // The second time the table exists, and -q prints nothing.
+    let before = fs::read(here.join("classic.png")).unwrap();
+    let (_, stderr) = done(here, &["render", "-q"]);
+    assert_eq!(stderr, "");
+    assert_eq!(fs::read(here.join("classic.png")).unwrap(), before);
+}
+
+/// The picture decides the table: the draft table for a small picture, none if even the fine table is too coarse.
+/// `--explain` says which and why, and draws nothing.
+#[test]
+fn a_picture_takes_the_smallest_table_that_is_good_enough() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    for (tolerance, name) in [("0.001", "draft"), ("1e-5", "standard"), ("1e-8", "fine")] {
+        let size = ["--size", SMALL, "--tolerance", tolerance];
+        let (_, stderr) = done(here, &[&["render"][..], &size].concat());
+        let words = [
+            format!("tables/{name}.table is not there yet"),
+            format!("96 × 54, table {name} (error "),
+        ];
+        for words in words {
+            assert!(stderr.contains(&words), "{stderr}");
+        }
+        let explain = [&["render", "--explain"][..], &size].concat();
+        let explained = printed(here, &explain);
+        for words in [
+            "96 × 54, edges to be right to ",
+            &format!("{name} (tables/{name}.table), error "),
+            "orders      0: ",
+            "and up are left out",
+            "edge error  ",
+        ] {
+            assert!(explained.contains(words), "no {words} in:\n{explained}");
+        }
+    }
+    let finest = ["render", "--size", SMALL, "--tolerance", "1e-10"];
+    let (_, stderr) = done(here, &finest);
+    assert!(stderr.contains("exact curves"), "{stderr}");
+    fs::remove_file(here.join("classic.png")).unwrap();
+    done(here, &[&finest[..], &["--explain"]].concat());
+    assert_eq!(listing(here), ["tables"]);
+    assert_eq!(
+        listing(&here.join("tables")),
+        ["draft.table", "fine.table", "standard.table"]
+    );
+
+    // A table that is named is used all the same, with a warning.
+    let coarse = ["--table", "tables/draft.table", "--tolerance", "1e-6"];
+    let (_, stderr) = done(here, &[&["render", "--size", SMALL][..], &coarse].concat());
+    assert!(
+        stderr.contains("the standard table is good enough"),
+        "{stderr}"
+    );
+}
+
+#[test]
+fn tolerances_that_make_no_sense_are_refused_as_misuse() {
+    let folder = tempdir().unwrap();
+    for (args, words) in [
+        (&["--tolerance", "0"][..], "image.tolerance = 0.0"),
+        (&["--tolerance", "-1"], "image.tolerance = -1.0"),
+        (&["--tolerance", "nan"], "image.tolerance = NaN"),
+        (&["--tolerance", "2"], "at most 1 pixel"),
+        (
+            &["--tolerance", "0.1", "--method", "exact"],
+            "--tolerance needs --method table",
+        ),
+        (
+            &["--explain", "--method", "integrate"],
+            "--explain needs --method table",
+        ),
+        (
+            &["--antialias", "true", "--method", "exact"],
+            "--antialias needs --method table",
+        ),
+        (&["--explain", "-o", "x.png"], "--explain"),
+    ] {
+        refused(folder.path(), &[&["render"], args].concat(), 2, &[words]);
+    }
+    assert!(listing(folder.path()).is_empty());
+}
+
+#[test]
+fn other_methods_need_no_table_and_draw_the_same_picture() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    for args in [
+        &["render", "--method", "exact", "-o", "e.png"][..],
+        &["render", "--method", "integrate", "-o", "i.png"],
+        &[
+            "render",
+            "--method=integrate",
+            "--integrate-tolerance=1e-5",
+            "-o",
+            "j.PNG",
+        ],
+    ] {
+        let others = ["--size", SMALL, "--table", "missing.table"];
+        done(here, &[args, &others].concat());
+    }
+    assert_eq!(listing(here), ["e.png", "i.png", "j.PNG"]);
+    let hard = ["--antialias", "false", "--size", SMALL, "-o", "t.png"];
+    done(here, &[&["render"][..], &hard].concat());
+    let pixels = |name: &str| image::open(here.join(name)).unwrap().into_luma8();
+    for name in ["i.png", "j.PNG", "t.png"] {
+        let pairs = pixels("e.png").into_raw().into_iter();
+        let pairs = pairs.zip(pixels(name).into_raw());
+        // A pixel whose centre is on an edge to the last digit may be either colour.
+        let different = pairs.filter(|(a, b)| a != b).count();
+        assert!(different <= 1, "{name}: {different} pixels differ");
+    }
+}
+
+#[test]
+fn the_picture_can_go_to_the_standard_output() {
+    let folder = with_draft();
+    let here = folder.path();
+    let draw = |to: &str| {
+        let args = ["render", "--table", "a.table", "--size", SMALL, "-o", to];
+        done(here, &args).0
+    };
+    assert_eq!(draw("x.png"), b"");
+    assert_eq!(draw("-"), fs::read(here.join("x.png")).unwrap());
+    assert_eq!(listing(here), ["a.table", "x.png"]);
+}
+
+#[test]
+fn render_checks_where_the_picture_goes_before_any_work() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    fs::create_dir(here.join("folder.png")).unwrap();
+    fs::write(here.join("file"), "").unwrap();
+    let before = listing(here);
+    for (output, code, words) in [
+        ("x.jpg", 2, &["x.jpg", ".png"][..]),
+        ("x", 2, &[".png"]),
+        ("folder.png", 1, &["folder.png is a folder"]),
+        ("no/x.png", 1, &["no/x.png", "the folder no does not exist"]),
+        ("file/x.png", 1, &["file/x.png", "file is not a folder"]),
+    ] {
+        refused(here, &["render", "-o", output], code, words);
+    }
+    // Nobody may write here, not even root, who may write anywhere else.
+    #[cfg(target_os = "linux")]
+    refused(
+        here,
+        &["render", "-o", "/proc/x.png"],
+        1,
+        &["/proc/x.png", "cannot be written"],
+    );
+    assert_eq!(listing(here), before, "something was written");
+}
+
+#[test]
+fn render_does_not_write_over_what_it_reads() {
+    let folder = with_draft();
+    let here = folder.path();
+    fs::rename(here.join("a.table"), here.join("table.png")).unwrap();
+    fs::write(here.join("scene.png"), builtins()[0].toml()).unwrap();
+    let before = fs::read(here.join("table.png")).unwrap();
+    let args = ["render", "--table", "table.png", "-o", "./table.png"];
+    refused(here, &args, 2, &["table.png", "the table"]);
+    // Here the scene's default picture has the name of the scene itself.
+    let args = ["render", "--table", "table.png", "scene.png"];
+    refused(here, &args, 2, &["scene.png", "the scene"]);
+    assert_eq!(fs::read(here.join("table.png")).unwrap(), before);
+    assert_eq!(listing(here), ["scene.png", "table.png"]);
+}

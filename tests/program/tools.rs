@@ -1,0 +1,22 @@
+//! Other programs that tests run.
+
+use std::env;
+use std::process::Command;
+
+/// Returns whether a tool is installed, in the system's own folders too. Panics if it is not and `DARKNESS_TOOLS` names
+/// it.
+pub(crate) fn has(tool: &str) -> bool {
+    let path = env::var("PATH").unwrap_or_default();
+    let found = Command::new("sh")
+        .args(["-c", &format!("command -v {tool}")])
+        .env("PATH", format!("{path}:/usr/sbin:/sbin"))
+        .output();
+    if found.is_ok_and(|found| found.status.success()) {
+        return true;
+    }
+    let needed = env::var("DARKNESS_TOOLS").unwrap_or_default();
+    let is_needed = needed.split_whitespace().any(|needed| needed == tool);
+    assert!(!is_needed, "{tool} is not installed");
+    eprintln!("{tool} is not installed: the test is skipped");
+    false
+}
