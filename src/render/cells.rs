@@ -9,8 +9,8 @@
 //! row gives the shares.
 //!
 //! # Integers
-//! Coordinates are rounded to 2⁻¹⁴ pixels, heights are their differences, areas are rounded to 2⁻¹⁴. A cell holds both in one
-//! number, the height above the sixteenth bit, the area below it. Sums of integers are the same in any order, and the
+//! Coordinates are rounded to 2⁻¹⁶ pixels, heights are their differences, areas are rounded to 2⁻¹⁶. A cell holds both in one
+//! number, the height above the 32nd bit, the area below it. Sums of integers are the same in any order, and the
 //! heights of a closed path cancel to nothing.
 //!
 //! # Steps along an arc
@@ -20,10 +20,10 @@
 use super::arc::Arc;
 
 /// Bits of a coordinate's fraction.
-const BITS: u32 = 14;
+const BITS: u32 = 16;
 
 /// One pixel.
-pub(super) const ONE: i32 = 1 << BITS;
+pub(super) const ONE: i64 = 1 << BITS;
 
 /// How far a chord may be off its arc, in pixels.
 const CHORD: f64 = 1.0 / 256.0;
@@ -38,7 +38,7 @@ const MOST_STEPS: i64 = 16;
 #[derive(Debug, Default)]
 pub(super) struct Cells {
     /// Row by row, each as long as `stride`: a row of pixels, and one cell for all that is beyond its right side.
-    cells: Vec<i32>,
+    cells: Vec<i64>,
     /// A bit for each cell that may not be 0, row by row.
     marks: Vec<u64>,
     stride: usize,
@@ -49,7 +49,7 @@ pub(super) struct Cells {
     top: i64,
 }
 
-/// A point (x, y) in 2⁻¹⁴ pixels, y from the first row of cells.
+/// A point (x, y) in 2⁻¹⁶ pixels, y from the first row of cells.
 #[derive(Debug, Clone, Copy)]
 struct Point {
     x: i64,
@@ -73,19 +73,19 @@ impl Cells {
 
     /// Adds a height and an area, of an arc of weight 1.
     #[inline(always)]
-    fn add(&mut self, row: usize, column: usize, weight: i32, height: i32, area: i32) {
+    fn add(&mut self, row: usize, column: usize, weight: i32, height: i64, area: i64) {
         let cell = &mut self.cells[row * self.stride + column];
-        *cell = cell.wrapping_add(weight * ((height << 16) + area));
+        *cell += i64::from(weight) * ((height << 32) + area);
         self.marks[row * self.words + column / 64] |= 1 << (column % 64);
     }
 
-    /// y in 2⁻¹⁴ pixels from the first row.
+    /// y in 2⁻¹⁶ pixels from the first row.
     #[inline(always)]
     fn down(&self, y: f64) -> i64 {
         fixed(y) - (self.top << BITS)
     }
 
-    /// The right side of the picture, and the lower side of the rows, in 2⁻¹⁴ pixels.
+    /// The right side of the picture, and the lower side of the rows, in 2⁻¹⁶ pixels.
     fn ends(&self) -> (i64, i64) {
         ((self.width as i64) << BITS, (self.rows as i64) << BITS)
     }
@@ -105,8 +105,8 @@ impl Cells {
         if first >= last {
             return;
         }
-        let step = i64::from(ONE) / steps(arc);
-        let (top, scale) = (self.top as f64, 1.0 / f64::from(ONE));
+        let step = ONE / steps(arc);
+        let (top, scale) = (self.top as f64, 1.0 / ONE as f64);
         let at = |y: i64| Point {
             x: fixed(arc.at(top + y as f64 * scale)),
             y,
@@ -144,8 +144,8 @@ impl Cells {
         if first > last {
             return;
         }
-        let step = i64::from(ONE) / steps(arc);
-        let scale = 1.0 / f64::from(ONE);
+        let step = ONE / steps(arc);
+        let scale = 1.0 / ONE as f64;
         let at = |cells: &Self, x: i64| Point {
             x,
             y: cells.down(arc.at(x as f64 * scale)),
@@ -195,7 +195,7 @@ impl Cells {
     /// Whether all places between two y are out of the rows, though they may be `reach` pixels beyond either.
     #[inline(always)]
     fn are_out(&self, y: (i64, i64), reach: f64) -> bool {
-        let reach = fixed(reach) + i64::from(ONE);
+        let reach = fixed(reach) + ONE;
         y.0.max(y.1) < -reach || y.0.min(y.1) > self.ends().1 + reach
     }
 
@@ -204,9 +204,9 @@ impl Cells {
     fn cover_in_row(&mut self, from: Point, to: Point, weight: i32) {
         let row = (from.y >> BITS) as usize;
         let (first, last) = (from.x >> BITS, to.x >> BITS);
-        let height = (to.y - from.y) as i32;
+        let height = to.y - from.y;
         if first == last && (first as u64) < self.width as u64 {
-            let twice_left = ((from.x + to.x) - (first << (BITS + 1))) as i32;
+            let twice_left = (from.x + to.x) - (first << (BITS + 1));
             self.add(
                 row,
                 first as usize,
@@ -221,10 +221,10 @@ impl Cells {
 
     /// Adds a chord that goes down by `height` in one row from one x to another. What of it is beyond a side of the
     /// picture is laid along that side.
-    fn cover_across(&mut self, row: usize, (from, to): (i64, i64), height: i32, weight: i32) {
+    fn cover_across(&mut self, row: usize, (from, to): (i64, i64), height: i64, weight: i32) {
         let right = self.ends().0;
         let rises = to > from;
-        let slope = f64::from(height) / (to - from) as f64;
+        let slope = height as f64 / (to - from) as f64;
         let (mut at, mut covered) = (from, 0);
         while covered != height {
             let column = if rises { at >> BITS } else { (at - 1) >> BITS };
@@ -245,7 +245,7 @@ impl Cells {
             let total = if is_last {
                 height
             } else {
-                nearest(slope * (next - from) as f64) as i32
+                nearest(slope * (next - from) as f64)
             };
             let (part, left) = (total - covered, at.clamp(0, right) + next.clamp(0, right));
             let column = column.clamp(0, right >> BITS);
@@ -254,7 +254,7 @@ impl Cells {
                 column as usize,
                 weight,
                 part,
-                area(part, (left - (column << (BITS + 1))) as i32),
+                area(part, left - (column << (BITS + 1))),
             );
             if is_last {
                 return;
@@ -271,8 +271,8 @@ impl Cells {
             self.cover_down(from, to, weight);
         } else if (row as u64) < self.rows as u64 && from.y != to.y {
             let column = from.x >> BITS;
-            let twice_left = ((from.x + to.x) - (column << (BITS + 1))) as i32;
-            let height = (to.y - from.y) as i32;
+            let twice_left = (from.x + to.x) - (column << (BITS + 1));
+            let height = to.y - from.y;
             self.add(
                 row as usize,
                 column as usize,
@@ -310,8 +310,8 @@ impl Cells {
                 x: if y == to.y { to.x } else { x_at(y) },
                 y,
             };
-            let twice_left = ((at.x + next.x) - (column << (BITS + 1))) as i32;
-            let height = (next.y - at.y) as i32;
+            let twice_left = (at.x + next.x) - (column << (BITS + 1));
+            let height = next.y - at.y;
             self.add(
                 row as usize,
                 column as usize,
@@ -433,7 +433,7 @@ impl Cells {
         let row = y >> BITS;
         let part = ((row + 1) << BITS) - y;
         if (row as u64) < self.rows as u64 {
-            self.add(row as usize, 0, weight, part as i32, part as i32);
+            self.add(row as usize, 0, weight, part, part);
         }
         row + 1
     }
@@ -443,15 +443,15 @@ impl Cells {
         centres_above(self.down(y))
     }
 
-    /// Walks a row that begins with the winding number `left`, in 2⁻¹⁴, and empties it. `run` is told each run of pixels
+    /// Walks a row that begins with the winding number `left`, in 2⁻¹⁶, and empties it. `run` is told each run of pixels
     /// of one share, `pixel` each pixel by itself: share 0 to [`ONE`].
     #[inline(always)]
     pub(super) fn walk(
         &mut self,
         row: usize,
-        left: i32,
-        mut run: impl FnMut(usize, usize, i32),
-        mut pixel: impl FnMut(usize, i32),
+        left: i64,
+        mut run: impl FnMut(usize, usize, i64),
+        mut pixel: impl FnMut(usize, i64),
     ) {
         let cells = &mut self.cells[row * self.stride..][..self.stride];
         let marks = &mut self.marks[row * self.words..][..self.words];
@@ -468,11 +468,11 @@ impl Cells {
                     run(next, column, share.clamp(0, ONE));
                 }
                 let cell = core::mem::take(&mut cells[column]);
-                let area = i32::from(cell as i16);
+                let area = i64::from(cell as i32);
                 if column < self.width {
                     pixel(column, (share + area).clamp(0, ONE));
                 }
-                share += (cell - area) >> 16;
+                share += (cell - area) >> 32;
                 next = column + 1;
             }
         }
@@ -495,26 +495,27 @@ fn steps(arc: &Arc) -> i64 {
 
 /// The area right of a chord of some height, twice the share of the pixel's width to its left in the mean.
 #[inline(always)]
-fn area(height: i32, twice_share: i32) -> i32 {
-    let right = i64::from(2 * ONE - twice_share);
-    ((i64::from(height) * right + i64::from(ONE)) >> (BITS + 1)) as i32
+fn area(height: i64, twice_share: i64) -> i64 {
+    let right = 2 * ONE - twice_share;
+    (height * right + ONE) >> (BITS + 1)
 }
 
 /// How many pixels' centres are above a place, or left of it.
 #[inline(always)]
 fn centres_above(place: i64) -> i64 {
-    (place + i64::from(ONE / 2) - 1) >> BITS
+    (place + ONE / 2 - 1) >> BITS
 }
 
-/// A coordinate in 2⁻¹⁴ pixels.
+/// A coordinate in 2⁻¹⁶ pixels.
 #[inline(always)]
 pub(super) fn fixed(coordinate: f64) -> i64 {
-    nearest(coordinate * f64::from(ONE))
+    nearest(coordinate * ONE as f64)
 }
 
 /// The nearest integer, for numbers below 2⁵¹: a sum with 1.5 · 2⁵² is rounded to it.
 #[inline(always)]
 fn nearest(number: f64) -> i64 {
     const ROUNDER: f64 = 6_755_399_441_055_744.0;
-    (number + ROUNDER).to_bits().cast_signed() - ROUNDER.to_bits().cast_signed()
+    let bits = (number + ROUNDER).to_bits().cast_signed();
+    bits.wrapping_sub(ROUNDER.to_bits().cast_signed())
 }

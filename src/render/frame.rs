@@ -97,13 +97,13 @@ impl Workspace {
         let projection = Projection::new(view, curves);
         let tolerance = if smooth { SMOOTH } else { HARD };
         self.path.draw(&projection, tolerance, covers);
-        let rows = (BAND / (size_of::<i32>() * width)).clamp(1, height);
+        let rows = (BAND / (size_of::<i64>() * width)).clamp(1, height);
         self.sort(height, rows);
         let frame = Frame {
             view,
             curves,
             smooth,
-            doubt: 2.0 * (tolerance + curves.error().rounding) + 2.0 / f64::from(ONE),
+            doubt: 2.0 * (tolerance + curves.error().rounding) + 2.0 / ONE as f64,
             path: &self.path,
             arcs_of: &self.arcs_of,
             left: left(&self.path, view, curves),
@@ -149,7 +149,7 @@ impl Workspace {
         for (i, arc) in self.path.arcs.iter().enumerate() {
             let (first, last) = arc.rows();
             let band = |row: f64| (row.max(0.0) as usize).min(height - 1) / rows;
-            for arcs in &mut self.arcs_of[band(first)..=band(last + 1.0 / f64::from(ONE))] {
+            for arcs in &mut self.arcs_of[band(first)..=band(last + 1.0 / ONE as f64)] {
                 arcs.push(i as u32);
             }
         }
@@ -198,7 +198,7 @@ impl Frame<'_> {
                 left += weight;
             }
             let pixels = &mut pixels[row * self.stride..][..self.width];
-            fill_row(cells, row, left * ONE, pixels);
+            fill_row(cells, row, i64::from(left) * ONE, pixels);
         }
         for &(column, row) in &scratch.doubtful {
             let (column, row) = (column as usize, row as usize);
@@ -213,7 +213,7 @@ impl Frame<'_> {
 }
 
 /// Fills a row of pixels with their shares.
-fn fill_row(cells: &mut Cells, row: usize, left: i32, pixels: &mut [u8]) {
+fn fill_row(cells: &mut Cells, row: usize, left: i64, pixels: &mut [u8]) {
     pixels.fill(0);
     let pixels = core::cell::Cell::from_mut(pixels).as_slice_of_cells();
     cells.walk(
@@ -232,8 +232,8 @@ fn fill_row(cells: &mut Cells, row: usize, left: i32, pixels: &mut [u8]) {
 }
 
 /// A share as a grey, to the nearest.
-fn grey(share: i32) -> u8 {
-    ((share * i32::from(WHITE) + ONE / 2) / ONE) as u8
+fn grey(share: i64) -> u8 {
+    ((share * i64::from(WHITE) + ONE / 2) / ONE) as u8
 }
 
 /// The winding number along the picture's left side, but for the path's steps: that of one pixel, far from the path,

@@ -10,7 +10,8 @@ use darkness::table::{
 };
 
 use crate::fuzzed::crafted::{
-    METADATA_AT, METADATA_LENGTH_AT, NUMBERS_LENGTH_AT, VERSION_AT, mend_preamble, sealed, write_u32,
+    METADATA_AT, METADATA_LENGTH_AT, NUMBERS_LENGTH_AT, VERSION_AT, mend_preamble, sealed,
+    write_u32,
 };
 
 fn draft() -> Table {

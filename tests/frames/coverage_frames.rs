@@ -1,12 +1,10 @@
-//! Guards against greys that depend on how the frame was drawn: in tiles or pixel by pixel, on how many threads, into
-//! whose buffer, on which side of a mirror.
+//! Guards against greys that depend on how the frame was drawn: on how many threads, into whose buffer, on which side of
+//! a mirror.
 
 use darkness::isoradial::Isoradials;
 use darkness::render::{RenderError, coverage, mask};
 use darkness::scene::{Scene, View, builtins};
-use proptest::prelude::*;
 
-use crate::any_scene::any_scene;
 use crate::shares::Picture;
 use crate::tables::table;
 
@@ -27,85 +25,20 @@ fn smooth(picture: &Picture) -> Vec<u8> {
     coverage::render(&picture.view, &picture.curves).unwrap()
 }
 
-/// Guards against a tile that is filled although an edge passes one of its pixels.
+/// Guards against light where nothing is seen: through a wide lens all of the disk is half a pixel, seen from within its
+/// plane.
 #[test]
-fn tiles_change_no_pixel_of_the_built_in_scenes() {
-    for builtin in builtins() {
-        for size in [(641, 359), (67, 1), (1, 131)] {
-            let picture = resized(builtin.name(), size);
-            let single = coverage::render_every_pixel(&picture.view, &picture.curves).unwrap();
-            assert!(smooth(&picture) == single, "{}, {size:?}", builtin.name());
-            // A frame without edges would be the same however it was drawn.
-            assert!(size.0 < 640 || single.iter().any(|value| (1..255).contains(value)));
-        }
-    }
-}
-
-/// Guards against greys a pixel or more from anything that is seen, where an edge bends so much within a pixel that its
-/// tangents miss it by pixels: through a wide lens, all of the disk is half a pixel, and seen from within its plane.
-#[test]
-fn tangents_show_nothing_where_a_tile_does_not() {
+fn a_disk_within_one_pixel_lights_that_pixel_alone() {
     let text = "[camera]\nposition = [99.99999987854646, 0.0, -0.004928560257966286]\n\
                 focus = [0.014648543438582351, 0.0, 1.7066550325120646]\nup = [0.0, 0.2, 1.0]\nfov = 160.0\n\
                 [disk]\ninner = 3.0\nouter = 12.0\n[image]\nwidth = 33\nheight = 59\n";
-    let picture = picture(&Scene::from_toml(text).unwrap());
-    let single = coverage::render_every_pixel(&picture.view, &picture.curves).unwrap();
-    let lit: Vec<usize> = (0..single.len()).filter(|&k| single[k] > 0).collect();
+    let frame = smooth(&picture(&Scene::from_toml(text).unwrap()));
+    let lit: Vec<usize> = (0..frame.len()).filter(|&k| frame[k] > 0).collect();
     assert_eq!(
         lit,
         [29 * 33 + 16],
         "the pixel in the direction of the hole"
     );
-    assert!(smooth(&picture) == single);
-}
-
-/// Guards against an edge that counts in a pixel from its tile and not from the pixel alone: proved off it while its
-/// tangent clips a corner, or bent too much by the one bound and not by the other.
-#[test]
-fn an_edge_beside_a_pixel_counts_from_a_tile_as_from_the_pixel() {
-    let seen = |position: &str, focus: &str, up: &str, fov: &str, outer: &str, size: &str| {
-        format!(
-            "[camera]\nposition = [{position}]\nfocus = [{focus}]\nup = [{up}, 0.2, 1.0]\nfov = {fov}\n\
-             [disk]\ninner = 3.0\nouter = {outer}\n[image]\n{size}\n"
-        )
-    };
-    for text in [
-        seen(
-            "0.0, 0.0, -387.6866343605761",
-            "-0.4811046642851364, 0.6301449297092975, -0.0008106353583912096",
-            "0.13723493364854428",
-            "1.204742963716989",
-            "18.89376692201001",
-            "width = 41\nheight = 38",
-        ),
-        seen(
-            "-1.9883185377756443, -16.6826129627786, 0.0",
-            "0.21025151707377865, -0.026451688435980003, -0.039587757444630584",
-            "0.4625483908688213",
-            "52.213853224639045",
-            "8.179440027755556",
-            "width = 108\nheight = 75",
-        ),
-    ] {
-        let picture = picture(&Scene::from_toml(&text).unwrap());
-        let single = coverage::render_every_pixel(&picture.view, &picture.curves).unwrap();
-        assert!(smooth(&picture) == single, "{text}");
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn tiles_change_no_pixel_of_any_scene((kind, scene) in any_scene(), wide in 1..4_u32) {
-        let size = scene.image();
-        let scene = scene.with_size(wide * size.width, size.height).unwrap();
-        let picture = picture(&scene);
-        let single = coverage::render_every_pixel(&picture.view, &picture.curves).unwrap();
-        let tiled = smooth(&picture);
-        let differing: Vec<usize> = (0..tiled.len()).filter(|&k| tiled[k] != single[k]).collect();
-        prop_assert!(differing.is_empty(), "{kind:?}: {} pixels, the first {}\n{}", differing.len(), differing[0], scene.to_toml());
-    }
 }
 
 /// How a frame is drawn into a caller's buffer.
@@ -205,10 +138,8 @@ fn one_thread_and_two_draw_the_same_bytes() {
                 .unwrap();
             pool.install(|| {
                 assert_eq!(rayon::current_num_threads(), threads);
-                let every = coverage::render_every_pixel(&picture.view, &picture.curves).unwrap();
                 (
                     smooth(&picture),
-                    every,
                     mask::render(&picture.view, &picture.curves).unwrap(),
                 )
             })
@@ -251,9 +182,11 @@ fn is_grey(frame: &[u8]) -> bool {
     frame.iter().any(|value| (1..255).contains(value))
 }
 
-/// Guards against a pixel's sides being treated unlike each other: left and right.
+/// Guards against a pixel's sides being treated unlike each other: left and right. The path's ends are rounded to a grid
+/// of 2⁻¹⁴ pixels, which has no mirror image, so that a share may be rounded to the next grey.
 #[test]
-fn left_and_right_are_alike_to_the_byte() {
+fn left_and_right_are_alike_to_one_grey() {
+    let (mut unlike, mut greys) = (0, 0);
     for (position, focus, fov) in [
         ("[29.5442, 0, 5.2094]", "[0, 0, 0]", 30.0),
         ("[29.5442, 0, -0.02]", "[0, 0, 0]", 30.0),
@@ -266,13 +199,25 @@ fn left_and_right_are_alike_to_the_byte() {
                 let picture = upright(position, focus, fov, outer, size);
                 let frame = smooth(&picture);
                 assert!(is_grey(&frame), "{position}");
+                let other = mirrored(&frame, picture.width());
+                let most = frame.iter().zip(&other).map(|(a, b)| a.abs_diff(*b)).max();
                 assert!(
-                    frame == mirrored(&frame, picture.width()),
-                    "{position}, {outer}, {size:?}"
+                    most <= Some(1),
+                    "{position}, {outer}, {size:?}: {most:?} greys"
                 );
+                unlike += frame.iter().zip(&other).filter(|(a, b)| a != b).count();
+                greys += frame
+                    .iter()
+                    .filter(|value| (1..255).contains(*value))
+                    .count();
             }
         }
     }
+    println!("{unlike} of {greys} greys are not alike");
+    assert!(
+        unlike * 20 < greys,
+        "{unlike} of {greys} greys are not alike"
+    );
 }
 
 /// Guards against the same between top and bottom; from within the disk's plane what is above it is what is below.

@@ -22,7 +22,7 @@ mod coverage_rings;
 mod extreme_cameras;
 mod masks;
 mod needs;
+mod outline;
 mod photon_rings;
 mod symmetry;
-mod tiles;
 mod zoomed_edges;

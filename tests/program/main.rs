@@ -16,6 +16,5 @@ mod crash_only;
 mod determinism;
 mod disk_faults;
 mod farm;
-mod instruction_sets;
 mod long_runs;
 mod table_faults;

@@ -1,5 +1,5 @@
-//! Guards against a tile that is filled although one of its pixels differs: whole frames against the same frames with
-//! every pixel asked by itself, over random scenes.
+//! Guards against an outline that puts a pixel on the wrong side of an edge: whole frames against the same frames with
+//! each pixel's own ray, over the built-in and random scenes.
 
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::render::mask::{render, render_every_pixel};
@@ -19,13 +19,12 @@ fn frames(scene: &Scene) -> (Vec<u8>, Vec<u8>) {
 }
 
 #[test]
-fn tiles_change_no_pixel_of_the_built_in_scenes() {
+fn built_in_scenes_equal_each_pixel_s_own_ray() {
     for builtin in builtins() {
         let scene = Scene::builtin(builtin.name()).unwrap();
-        // Sizes that no tile divides.
         for (width, height) in [(641, 359), (67, 1), (1, 131)] {
-            let (tiled, single) = frames(&scene.with_size(width, height).unwrap());
-            assert!(tiled == single, "{} at {width} × {height}", builtin.name());
+            let (filled, single) = frames(&scene.with_size(width, height).unwrap());
+            assert!(filled == single, "{} at {width} × {height}", builtin.name());
         }
     }
 }
@@ -34,7 +33,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
-    fn tiles_change_no_pixel_of_any_scene(
+    fn random_scenes_equal_each_pixel_s_own_ray(
         log_r in 0.01..6.0_f64,
         direction in (-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64),
         // Half of the cameras in the disk's plane, where φ₁ jumps, or nearly so.
@@ -64,8 +63,8 @@ proptest! {
         );
         // What stands in the disk or looks nowhere is refused by the scene itself.
         if let Ok(scene) = Scene::from_toml(&text) {
-            let (tiled, single) = frames(&scene);
-            let differing = tiled.iter().zip(&single).filter(|(a, b)| a != b).count();
+            let (filled, single) = frames(&scene);
+            let differing = filled.iter().zip(&single).filter(|(a, b)| a != b).count();
             prop_assert_eq!(differing, 0, "{}", text);
         }
     }
