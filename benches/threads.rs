@@ -7,7 +7,7 @@ mod interleaved;
 use darkness::cli::FrameRange;
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
-use darkness::render::batch::{self, Curved, Drawn, Sharing};
+use darkness::render::batch::{self, Curved, DrawnFrame, Sharing};
 use darkness::render::{coverage, mask};
 use darkness::scene::{Animation, Scene, View, builtins};
 use interleaved::{Contender, compare};
@@ -96,7 +96,7 @@ fn main() {
             );
             let draw = |frames: &Curved<'_, Exact>| {
                 let all = FrameRange::up_to(FRAMES);
-                let done = |drawn: Drawn<'_>| {
+                let done = |drawn: DrawnFrame<'_>| {
                     drawn.pixels.map(|(frame, _)| {
                         std::hint::black_box(frame);
                     })

@@ -1,7 +1,7 @@
 //! Frames with smooth edges: each pixel is the share of its square that the disk covers.
 
+use super::error::{RenderError, blank};
 use super::frame::{Threads, Workspace};
-use super::{RenderError, blank};
 use crate::isoradial::Isoradials;
 use crate::scene::View;
 

@@ -1,14 +1,15 @@
 //! A frame from its outline: in bands of rows, each by one thread.
 
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 
+use super::WHITE;
 use super::arc::Arc;
 use super::cells::{Cells, ONE, fixed};
+use super::error::{RenderError, check_buffer};
 use super::path::Path;
 use super::projection::Projection;
-use super::{RenderError, WHITE};
 use crate::isoradial::{Boundary, Isoradials};
 use crate::scene::View;
 
@@ -84,16 +85,8 @@ impl Workspace {
         pixels: &mut [u8],
         stride: usize,
     ) -> Result<(), RenderError> {
+        let needed = check_buffer(view, pixels, stride)?;
         let (width, height) = (view.width() as usize, view.height() as usize);
-        let needed = stride.saturating_mul(height - 1).saturating_add(width);
-        if stride < width || pixels.len() < needed {
-            return Err(RenderError::Buffer {
-                width,
-                height,
-                stride,
-                bytes: pixels.len(),
-            });
-        }
         let projection = Projection::new(view, curves);
         let tolerance = if smooth { SMOOTH } else { HARD };
         self.path.draw(&projection, tolerance, covers);
@@ -128,7 +121,8 @@ impl Workspace {
             bands.for_each(|(band, pixels)| frame.draw(band, pixels, scratch));
         } else {
             let bands = Mutex::new(bands);
-            let next = || super::locked(&bands).next();
+            // A thread that panicked left the iterator whole.
+            let next = || bands.lock().unwrap_or_else(PoisonError::into_inner).next();
             self.scratch[..count].par_iter_mut().for_each(|scratch| {
                 while let Some((band, pixels)) = next() {
                     frame.draw(band, pixels, scratch);

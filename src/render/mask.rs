@@ -1,8 +1,10 @@
 //! Frames with hard edges: white where a pixel's centre sees the disk, else black.
 
+pub use rayon::prelude::*;
+
 pub use super::WHITE;
+use super::error::{RenderError, blank};
 use super::frame::{Threads, Workspace};
-use super::{RenderError, blank, each_pixel};
 use crate::isoradial::Isoradials;
 use crate::scene::View;
 
@@ -34,10 +36,19 @@ pub fn render_into(
 /// # Errors
 /// [`RenderError::Memory`]
 pub fn render_every_pixel(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> {
-    each_pixel(view, |column, row| {
-        let centre = (column as f64 + 0.5, row as f64 + 0.5);
-        if sees(view, curves, centre) { WHITE } else { 0 }
-    })
+    let mut pixels = blank(view)?;
+    let width = view.width() as usize;
+    pixels
+        .par_chunks_exact_mut(width)
+        .enumerate()
+        .for_each(|(row, pixels)| {
+            for (column, pixel) in pixels.iter_mut().enumerate() {
+                if sees(view, curves, (column as f64 + 0.5, row as f64 + 0.5)) {
+                    *pixel = WHITE;
+                }
+            }
+        });
+    Ok(pixels)
 }
 
 /// Whether the disk is seen at a place of the picture, in pixels from its left and its top.

@@ -1,130 +1,46 @@
-//! Frames: what a pixel's centre sees, white where that is the disk at any order ([`mask`], [`pixelwise`]), or the share
-//! of its square that the disk covers ([`coverage`]); of many views [side by side](batch).
+//! Frames: which pixels see the disk.
 //!
-//! A viewer or an encoder has frames drawn into memory of its own:
+//! [`Renderer`] draws a scene in one call. The rest of this module is what it is made of, and the slower methods that it
+//! is tested against:
 //!
+//! | module | what it does |
+//! |---|---|
+//! | [`needs`] | finds the smallest table and the fewest curves that a scene's tolerance allows |
+//! | [`frame`] | draws a frame from isoradial curves, with smooth or hard edges |
+//! | [`batch`] | draws many frames of an animation side by side |
+//! | [`mask`], [`coverage`] | draw one frame from given curves, with hard and with smooth edges |
+//! | [`pixelwise`] | draws a frame by following every pixel's ray, by any method |
+//!
+//! # How a frame is drawn
+//! ```text
+//! curves ──in this view──▶ path ──────────▶ cells ──────────▶ rows of pixels
+//! isoradial/outline.rs     path.rs, arc.rs  cells.rs          frame.rs
 //! ```
-//! use darkness::isoradial::{Isoradials, Sight};
-//! use darkness::orbit::exact::Exact;
-//! use darkness::render::coverage;
-//! use darkness::scene::{Scene, View};
 //!
-//! let scene = Scene::builtin("classic").unwrap().with_size(320, 180)?;
-//! let view = View::new(&scene);
-//! // From a table's lookup in place of Exact in half the time.
-//! let curves = Isoradials::new(&Sight::new(&scene, &view, scene.tolerance()), &Exact);
-//! // Rows of 320 bytes, 512 apart.
-//! let mut memory = vec![0; 512 * 180];
-//! coverage::render_into(&view, &curves, &mut memory, 512)?;
-//! assert!(memory.contains(&255));
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
+//! The outline of the disk's image is a closed path of curves. It is projected into the picture as short cubics,
+//! [arcs](self#arcs). For smooth edges each arc adds the area to its right to the pixels that it passes, and a sum along
+//! each row gives every pixel's share of the disk. For hard edges each arc turns on the pixels whose centres lie to its
+//! right; centres that are too near to an arc are asked one by one.
+//!
+//! # Arcs
+//! `arc.rs` derives how far an arc may be off its edge, `path.rs` which parts of the outline are out of the picture,
+//! `cells.rs` the areas.
 
 mod arc;
 pub mod batch;
 mod cells;
 pub mod coverage;
+mod error;
 pub mod frame;
 pub mod mask;
 pub mod needs;
 mod path;
 pub mod pixelwise;
 mod projection;
+mod renderer;
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
-
-use rayon::prelude::*;
-
-use crate::orbit::OrbitError;
-use crate::scene::View;
-
-/// Why a frame could not be drawn.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum RenderError {
-    /// The frame is too large for the memory there is.
-    #[error(
-        "a picture of {width} × {height} pixels takes {bytes} bytes of memory, more than there is: ask for a smaller one"
-    )]
-    Memory {
-        /// Pixels in a row.
-        width: u32,
-        /// Rows.
-        height: u32,
-        /// What they take.
-        bytes: u64,
-    },
-    /// The frame does not fit the buffer it is to be drawn into.
-    #[error(
-        "a picture of {width} × {height} pixels, its rows {stride} bytes apart, does not fit a buffer of {bytes} bytes"
-    )]
-    Buffer {
-        /// Pixels in a row.
-        width: usize,
-        /// Rows.
-        height: usize,
-        /// From one row to the next.
-        stride: usize,
-        /// What there is.
-        bytes: usize,
-    },
-    /// A ray could not be followed.
-    #[error(transparent)]
-    Orbit(#[from] OrbitError),
-}
-
-/// A frame of which each pixel (column, row) is found by itself.
-fn each_pixel(
-    view: &View,
-    value: impl Fn(usize, usize) -> u8 + Sync,
-) -> Result<Vec<u8>, RenderError> {
-    let mut pixels = blank(view)?;
-    pixels
-        .par_chunks_exact_mut(view.width() as usize)
-        .enumerate()
-        .for_each(|(row, pixels)| {
-            for (column, pixel) in pixels.iter_mut().enumerate() {
-                *pixel = value(column, row);
-            }
-        });
-    Ok(pixels)
-}
+pub use error::RenderError;
+pub use renderer::{FrameReport, Renderer};
 
 /// White: the disk.
 pub const WHITE: u8 = 255;
-
-/// What is behind a lock: whole at every moment here, also where a thread panicked.
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// More than curves and whatever else a frame takes beside its pixels, in bytes.
-const BESIDE: usize = 16 << 20;
-
-/// A black frame.
-fn blank(view: &View) -> Result<Vec<u8>, RenderError> {
-    let mut pixels = Vec::new();
-    blank_into(view, &mut pixels)?;
-    Ok(pixels)
-}
-
-/// Makes room for a frame: what was there may stay.
-fn blank_into(view: &View, pixels: &mut Vec<u8>) -> Result<(), RenderError> {
-    let (width, height) = (view.width(), view.height());
-    let bytes = u64::from(width) * u64::from(height);
-    let memory = || RenderError::Memory {
-        width,
-        height,
-        bytes,
-    };
-    let length = usize::try_from(bytes).map_err(|_| memory())?;
-    let more = length.saturating_sub(pixels.len());
-    pixels.try_reserve_exact(more).map_err(|_| memory())?;
-    if more > 0 {
-        // What drawing takes beside it: asked for and given back, since where it is refused later the process ends.
-        Vec::<u8>::new()
-            .try_reserve_exact(BESIDE)
-            .map_err(|_| memory())?;
-    }
-    pixels.resize(length, 0);
-    Ok(())
-}

@@ -4,7 +4,8 @@ use core::f64::consts::PI;
 
 use rayon::prelude::*;
 
-use super::{RenderError, WHITE, blank};
+use super::WHITE;
+use super::error::{RenderError, blank, check_buffer};
 use crate::orbit::integrate::FixedStep;
 use crate::orbit::{Event, EventKind, OrbitError, Orbits, Ray};
 use crate::scene::{Disk, Scene, View};
@@ -20,21 +21,42 @@ pub fn render(
     orbits: &impl Orbits,
     row_done: &(dyn Fn() + Sync),
 ) -> Result<Vec<u8>, RenderError> {
-    let width = view.width() as usize;
     let mut pixels = blank(view)?;
-    pixels
-        .par_chunks_exact_mut(width)
-        .enumerate()
-        .try_for_each(|(j, row)| {
-            for (i, pixel) in row.iter_mut().enumerate() {
-                if sees(scene, view, orbits, (i as u32, j as u32))? {
-                    *pixel = WHITE;
-                }
-            }
-            row_done();
-            Ok::<(), OrbitError>(())
-        })?;
+    render_into(
+        scene,
+        view,
+        orbits,
+        row_done,
+        &mut pixels,
+        view.width() as usize,
+    )?;
     Ok(pixels)
+}
+
+/// Draws the frame into a caller's buffer: row j begins at `j stride`.
+///
+/// # Errors
+/// [`RenderError::Buffer`] for a stride or a buffer that the frame does not fit; [`RenderError::Orbit`] with what the
+/// method returns for a ray that it cannot follow.
+pub fn render_into(
+    scene: &Scene,
+    view: &View,
+    orbits: &impl Orbits,
+    row_done: &(dyn Fn() + Sync),
+    pixels: &mut [u8],
+    stride: usize,
+) -> Result<(), RenderError> {
+    let needed = check_buffer(view, pixels, stride)?;
+    let width = view.width() as usize;
+    let rows = pixels[..needed].par_chunks_mut(stride).enumerate();
+    rows.try_for_each(|(j, row)| {
+        for (i, pixel) in row[..width].iter_mut().enumerate() {
+            let sees = sees(scene, view, orbits, (i as u32, j as u32))?;
+            *pixel = if sees { WHITE } else { 0 };
+        }
+        row_done();
+        Ok(())
+    })
 }
 
 /// Whether a pixel (column, row) sees the disk.

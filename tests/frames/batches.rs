@@ -7,7 +7,7 @@ use std::sync::Mutex;
 use darkness::cli::FrameRange;
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
-use darkness::render::batch::{self, Curved, Drawn, FrameError, Frames, RayByRay, Sharing};
+use darkness::render::batch::{self, Curved, DrawnFrame, FrameError, Frames, RayByRay, Sharing};
 use darkness::render::{coverage, mask, pixelwise};
 use darkness::scene::{Animation, Scene, View};
 
@@ -34,7 +34,7 @@ fn drawn(frames: &impl Frames, range: &str, threads: usize) -> BTreeMap<u32, Vec
     let range: FrameRange = range.parse().unwrap();
     let all = Mutex::new(BTreeMap::new());
     let places = Mutex::new(Vec::new());
-    let done = |drawn: Drawn<'_>| {
+    let done = |drawn: DrawnFrame<'_>| {
         let (pixels, effort) = drawn.pixels?;
         assert!(!effort.ray_by_ray);
         places.lock().unwrap().push((drawn.number, drawn.place));
@@ -150,7 +150,7 @@ fn a_failure_ends_the_batch_if_it_is_told_to() {
         .unwrap();
     for stop in [true, false] {
         let (begun, failed) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        let done = |drawn: Drawn<'_>| {
+        let done = |drawn: DrawnFrame<'_>| {
             begun.fetch_add(1, Ordering::Relaxed);
             if drawn.pixels.is_err() {
                 failed.fetch_add(1, Ordering::Relaxed);
@@ -179,7 +179,7 @@ fn a_failure_ends_the_batch_if_it_is_told_to() {
 fn frames_that_are_not_wanted_are_passed_over() {
     let orbit = animation("orbit", 40);
     let drawn = Mutex::new(Vec::new());
-    let done = |frame: Drawn<'_>| {
+    let done = |frame: DrawnFrame<'_>| {
         drawn.lock().unwrap().push(frame.number);
         frame.pixels.map(|_| ())
     };

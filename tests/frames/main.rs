@@ -24,5 +24,6 @@ mod masks;
 mod needs;
 mod outline;
 mod photon_rings;
+mod renderer;
 mod symmetry;
 mod zoomed_edges;

@@ -8,7 +8,7 @@ use std::alloc::System;
 use darkness::cli::FrameRange;
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
-use darkness::render::batch::{self, Curved, Drawn, Sharing};
+use darkness::render::batch::{self, Curved, DrawnFrame, Sharing};
 use darkness::render::{coverage, mask};
 use darkness::scene::{Animation, Scene, View};
 
@@ -67,7 +67,7 @@ pub(crate) fn frames_take_no_memory_once_warm() {
             .unwrap();
         let draw = |frames: FrameRange| {
             let curved = Curved::new(&orbit, &Exact);
-            let done = |drawn: Drawn<'_>| drawn.pixels.map(|_| ());
+            let done = |drawn: DrawnFrame<'_>| drawn.pixels.map(|_| ());
             let sharing = Sharing::fastest(frames.count(), u64::MAX);
             batch::draw(&curved, frames.iter(), sharing, |_| true, done).unwrap();
         };

@@ -3,8 +3,9 @@
 use super::super::method::Method;
 use crate::isoradial::Isoradials;
 use crate::orbit::exact::Exact;
+pub(super) use crate::render::FrameReport;
+pub(super) use crate::render::batch::DrawnFrame;
 use crate::render::batch::{self, Curved, FrameError, Frames, RayByRay, Sharing};
-pub(super) use crate::render::batch::{Drawn, Effort};
 pub(super) use crate::render::frame::Workspace;
 use crate::render::needs::Needs;
 use crate::scene::{Animation, Scene, View};
@@ -40,7 +41,7 @@ impl FrameSource<'_> {
         number: u32,
         workspace: &mut Workspace,
         pixels: &mut Vec<u8>,
-    ) -> Result<Effort, FrameError> {
+    ) -> Result<FrameReport, FrameError> {
         self.0.draw(number, true, workspace, pixels)
     }
 
@@ -55,7 +56,7 @@ impl FrameSource<'_> {
         count: u64,
         at_a_time: u64,
         wanted: impl Fn(u32) -> bool + Sync,
-        done: impl Fn(Drawn<'_>) -> Result<(), E> + Sync,
+        done: impl Fn(DrawnFrame<'_>) -> Result<(), E> + Sync,
     ) -> Result<(), E> {
         let sharing = Sharing::fastest(count, at_a_time);
         batch::draw(self, numbers, sharing, wanted, done)
@@ -69,7 +70,7 @@ impl Frames for FrameSource<'_> {
         on_all_threads: bool,
         workspace: &mut Workspace,
         pixels: &mut Vec<u8>,
-    ) -> Result<Effort, FrameError> {
+    ) -> Result<FrameReport, FrameError> {
         self.0.draw(number, on_all_threads, workspace, pixels)
     }
 }

@@ -10,7 +10,7 @@ use super::super::method::Method;
 use super::super::pattern::Pattern;
 use super::super::progress::{FrameProgress, ProgressKind, Report};
 use super::super::writable;
-use super::draw::{Drawn, Effort, FrameSource, Workspace};
+use super::draw::{DrawnFrame, FrameReport, FrameSource, Workspace};
 use super::film::{Broken, Film};
 use super::format::Format;
 use super::memory;
@@ -128,7 +128,7 @@ impl Run<'_> {
     fn draw<E: Send>(
         &self,
         wanted: impl Fn(u32) -> bool + Sync,
-        done: impl Fn(Drawn<'_>) -> Result<(), E> + Sync,
+        done: impl Fn(DrawnFrame<'_>) -> Result<(), E> + Sync,
     ) -> Result<(), E> {
         let plan = self.plan;
         let numbers = plan
@@ -163,7 +163,7 @@ impl Run<'_> {
             sequence::write(&pattern.file(number), png, &self.plan.inputs)
                 .map_err(|error| anyhow::anyhow!("{pattern} cannot be written: {error}"))
         };
-        let done = |drawn: Drawn<'_>| {
+        let done = |drawn: DrawnFrame<'_>| {
             let number = drawn.number;
             if let Err(error) = self.encode_and_write(drawn, write) {
                 self.stats.failed(number, &error);
@@ -175,7 +175,7 @@ impl Run<'_> {
 
     fn encode_and_write(
         &self,
-        Drawn { number, pixels, .. }: Drawn<'_>,
+        DrawnFrame { number, pixels, .. }: DrawnFrame<'_>,
         write: impl Fn(u32, &[u8]) -> anyhow::Result<()>,
     ) -> anyhow::Result<()> {
         let (pixels, effort) = pixels?;
@@ -189,11 +189,11 @@ impl Run<'_> {
 
     /// Draws all frames into one file or pipe.
     fn film(&self, film: Film<'_>) -> anyhow::Result<()> {
-        let done = |drawn: Drawn<'_>| {
+        let done = |drawn: DrawnFrame<'_>| {
             let (number, place) = (drawn.number, drawn.place);
             let (pixels, effort) = match drawn.pixels {
                 Ok((pixels, effort)) => (Ok(pixels), effort),
-                Err(error) => (Err(error.into()), Effort::default()),
+                Err(error) => (Err(error.into()), FrameReport::default()),
             };
             let start = Instant::now();
             film.write(place, pixels)?;
@@ -208,7 +208,7 @@ impl Run<'_> {
         film.finish()
     }
 
-    fn done(&self, number: u32, effort: Effort, encoding: Duration, writing: Duration) {
+    fn done(&self, number: u32, effort: FrameReport, encoding: Duration, writing: Duration) {
         self.stats.drawn(number, effort, encoding, writing);
         self.progress.done();
     }

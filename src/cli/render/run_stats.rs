@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use super::draw::Effort;
+use super::draw::FrameReport;
 
 /// Counts, times and failures of frames, which several threads report.
 #[derive(Debug, Default)]
@@ -21,7 +21,7 @@ pub(super) struct Counts {
     /// Frames whose curves were not accurate enough.
     pub(super) ray_by_ray: u64,
     /// The frame with the largest error of an edge, the first of equals.
-    pub(super) worst: Option<(u32, Effort)>,
+    pub(super) worst: Option<(u32, FrameReport)>,
     /// Times summed over all threads: for curves, pixels, encoding and writing.
     pub(super) times: [Duration; 4],
     /// The numbers of the frames that failed, by reason.
@@ -30,7 +30,13 @@ pub(super) struct Counts {
 
 impl RunStats {
     /// Counts a frame that was drawn, encoded and written.
-    pub(super) fn drawn(&self, number: u32, effort: Effort, encoding: Duration, writing: Duration) {
+    pub(super) fn drawn(
+        &self,
+        number: u32,
+        effort: FrameReport,
+        encoding: Duration,
+        writing: Duration,
+    ) {
         let mut counts = self.counts();
         counts.drawn += 1;
         counts.ray_by_ray += u64::from(effort.ray_by_ray);

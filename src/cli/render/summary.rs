@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::super::destination::Destination;
 use super::super::method::Method;
 use super::super::progress::{Report, duration, warn};
-use super::draw::Effort;
+use super::draw::FrameReport;
 use super::plan::Plan;
 use super::run::Outcome;
 use super::run_stats::Counts;
@@ -74,7 +74,7 @@ pub(super) fn report(
 fn report_errors(plan: &Plan<'_>, counts: &Counts, report: Report) {
     let Some((
         number,
-        Effort {
+        FrameReport {
             error, ray_by_ray, ..
         },
     )) = counts.worst

@@ -4,11 +4,13 @@ use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use super::spans::Block;
-use super::{Effort, FrameError, Frames};
-use crate::isoradial::{EdgeError, Isoradials, Sight};
+use super::{FrameError, Frames, locked};
+use crate::isoradial::{Isoradials, Sight};
 use crate::orbit::path::SweptAngles;
+use crate::render::FrameReport;
+use crate::render::error::make_room;
 use crate::render::frame::{Threads, Workspace};
-use crate::render::{blank_into, locked, pixelwise};
+use crate::render::renderer::Frame;
 use crate::scene::{Animation, View};
 
 /// Frames whose pixels come from curves, and these from swept angles: of a table, or exact.
@@ -49,11 +51,11 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
         on_all_threads: bool,
         workspace: &mut Workspace,
         pixels: &mut Vec<u8>,
-    ) -> Result<Effort, FrameError> {
+    ) -> Result<FrameReport, FrameError> {
         let start = Instant::now();
         let scene = self.animation.frame(number)?;
         let view = View::new(&scene);
-        blank_into(&view, pixels)?;
+        make_room(&view, pixels)?;
         let block = self.block(number);
         let own;
         let curves = match block.span(number) {
@@ -67,33 +69,22 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
                 &own
             }
         };
-        let drawn = Instant::now();
-        let error = curves.error();
-        let unresolved = is_unresolved(error, scene.tolerance());
-        if unresolved {
-            // Two frames are not held at a time.
-            *pixels = Vec::new();
-            *pixels = pixelwise::render(&scene, &view, self.angles, &|| ())?;
-        } else {
-            let threads = if on_all_threads {
+        let frame = Frame {
+            scene: &scene,
+            view: &view,
+            curves,
+            angles: self.angles,
+            threads: if on_all_threads {
                 Threads::All
             } else {
                 Threads::This
-            };
-            let width = view.width() as usize;
-            workspace.draw(&view, curves, scene.antialias(), threads, pixels, width)?;
-        }
-        Ok(Effort {
-            curves: drawn - start,
-            pixels: drawn.elapsed(),
-            error,
-            ray_by_ray: unresolved,
+            },
+        };
+        let time = start.elapsed();
+        let report = frame.draw(workspace, pixels, view.width() as usize)?;
+        Ok(FrameReport {
+            curves: time,
+            ..report
         })
     }
-}
-
-/// Whether the curves fall short of what their angles and the arithmetic allow: where a disk of any width and a lens
-/// of any length bend them more than any number of nodes follows.
-fn is_unresolved(error: EdgeError, allowed: f64) -> bool {
-    error.interpolation > allowed && error.interpolation > 4.0 * (error.angles + error.rounding)
 }

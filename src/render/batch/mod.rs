@@ -7,14 +7,11 @@ mod curved;
 mod ray_by_ray;
 mod spans;
 
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use super::RenderError;
 use super::frame::Workspace;
-use super::locked;
-use crate::isoradial::EdgeError;
+use super::{FrameReport, RenderError};
 use crate::scene::SceneError;
 pub use curved::Curved;
 pub use ray_by_ray::RayByRay;
@@ -57,20 +54,7 @@ pub trait Frames: Sync {
         on_all_threads: bool,
         workspace: &mut Workspace,
         pixels: &mut Vec<u8>,
-    ) -> Result<Effort, FrameError>;
-}
-
-/// What a frame took, and how right it is.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Effort {
-    /// The time for curves that no frame before had.
-    pub curves: Duration,
-    /// The time for the pixels.
-    pub pixels: Duration,
-    /// What an edge may be off by.
-    pub error: EdgeError,
-    /// Whether each pixel's ray was followed by itself, the curves being less right than the angles.
-    pub ray_by_ray: bool,
+    ) -> Result<FrameReport, FrameError>;
 }
 
 /// Why a frame could not be drawn.
@@ -86,13 +70,13 @@ pub enum FrameError {
 
 /// A frame that was drawn, or could not be.
 #[derive(Debug)]
-pub struct Drawn<'a> {
+pub struct DrawnFrame<'a> {
     /// Its number in the animation.
     pub number: u32,
     /// How many frames were begun before it.
     pub place: u64,
     /// Its pixels, row by row from the top.
-    pub pixels: Result<(&'a [u8], Effort), FrameError>,
+    pub pixels: Result<(&'a [u8], FrameReport), FrameError>,
 }
 
 /// Draws frames on all threads of the current rayon pool. They are begun in order; each is handed to `done` when it
@@ -107,7 +91,7 @@ pub fn draw<E: Send>(
     numbers: impl Iterator<Item = u32> + Send,
     sharing: Sharing,
     wanted: impl Fn(u32) -> bool + Sync,
-    done: impl Fn(Drawn<'_>) -> Result<(), E> + Sync,
+    done: impl Fn(DrawnFrame<'_>) -> Result<(), E> + Sync,
 ) -> Result<(), E> {
     let side_by_side = sharing == Sharing::SideBySide;
     let numbers = Mutex::new(numbers.zip(0..));
@@ -122,7 +106,7 @@ pub fn draw<E: Send>(
                 continue;
             }
             let effort = frames.draw(number, !side_by_side, &mut workspace, &mut pixels);
-            let drawn = Drawn {
+            let drawn = DrawnFrame {
                 number,
                 place,
                 pixels: effort.map(|effort| (pixels.as_slice(), effort)),
@@ -140,4 +124,9 @@ pub fn draw<E: Send>(
     } else {
         worker()
     }
+}
+
+/// Locks. What is behind a lock is whole at every moment here, also where a thread panicked.
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

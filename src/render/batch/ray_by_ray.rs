@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
-use super::{Effort, FrameError, Frames};
+use super::{FrameError, Frames};
 use crate::orbit::Orbits;
 use crate::render::frame::Workspace;
-use crate::render::pixelwise;
+use crate::render::{FrameReport, pixelwise};
 use crate::scene::{Animation, View};
 
 /// Frames whose pixels are what their centres' rays meet, by some method.
@@ -33,14 +33,14 @@ impl<O: Orbits> Frames for RayByRay<'_, O> {
         _: bool,
         _: &mut Workspace,
         pixels: &mut Vec<u8>,
-    ) -> Result<Effort, FrameError> {
+    ) -> Result<FrameReport, FrameError> {
         let start = Instant::now();
         let scene = self.animation.frame(number)?;
         let view = View::new(&scene);
         *pixels = pixelwise::render(&scene, &view, self.orbits, self.row_done)?;
-        Ok(Effort {
+        Ok(FrameReport {
             pixels: start.elapsed(),
-            ..Effort::default()
+            ..FrameReport::default()
         })
     }
 }
