@@ -28,7 +28,7 @@ const SLOPE_SHARE: f64 = 0.15;
 
 /// A cubic over one of the picture's coordinates, u: `v = v₀ + d (s₀ + d (c₂ + d c₃))`, `d = u − u₀`. In pixels.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Arc {
+pub(super) struct EdgeArc {
     /// Whether u is the row coordinate y, and v the column coordinate x; else the other way round.
     pub(super) steep: bool,
     /// How much more of the disk is to the right of the arc than to its left, where u rises: 1 or −1.
@@ -37,14 +37,16 @@ pub(super) struct Arc {
     pub(super) u: (f64, f64),
     /// Where v begins and ends.
     pub(super) v: (f64, f64),
+    /// Least and greatest v: of the cubic's Bézier points, between which it lies.
+    hull: (f64, f64),
     slope: f64,
     c2: f64,
     c3: f64,
 }
 
-impl Arc {
+impl EdgeArc {
     /// The arc from one place on an edge to another, if it is right to `tolerance` pixels; `middle` is a place on the
-    /// edge between. `weight` is as in [`Arc::weight`] with the edge walked from `from` to `to`.
+    /// edge between. `weight` is as in [`EdgeArc::weight`] with the edge walked from `from` to `to`.
     pub(super) fn new(
         from: &Place,
         middle: &Place,
@@ -109,11 +111,16 @@ impl Arc {
         };
         let length = u.1 - u.0;
         let chord = (v.1 - v.0) / length;
+        let inner = (v.0 + length * slopes.0 / 3.0, v.1 - length * slopes.1 / 3.0);
         Self {
             steep,
             weight,
             u,
             v,
+            hull: (
+                v.0.min(v.1).min(inner.0.min(inner.1)),
+                v.0.max(v.1).max(inner.0.max(inner.1)),
+            ),
             slope: slopes.0,
             c2: (3.0 * chord - 2.0 * slopes.0 - slopes.1) / length,
             c3: (slopes.0 + slopes.1 - 2.0 * chord) / (length * length),
@@ -136,30 +143,14 @@ impl Arc {
         first.abs().max(last.abs()) * length * length / 8.0
     }
 
-    /// Least and greatest v: of the cubic's Bézier points, between which it lies.
-    pub(super) fn hull(&self) -> (f64, f64) {
-        let third = (self.u.1 - self.u.0) / 3.0;
-        let last_slope = self.slope + 3.0 * third * (2.0 * self.c2 + 9.0 * third * self.c3);
-        let points = [
-            self.v.0,
-            self.v.0 + third * self.slope,
-            self.v.1 - third * last_slope,
-            self.v.1,
-        ];
-        (
-            points.into_iter().fold(f64::INFINITY, f64::min),
-            points.into_iter().fold(f64::NEG_INFINITY, f64::max),
-        )
-    }
-
     /// The least and the greatest y.
     pub(super) fn rows(&self) -> (f64, f64) {
-        if self.steep { self.u } else { self.hull() }
+        if self.steep { self.u } else { self.hull }
     }
 
     /// The least and the greatest x.
     pub(super) fn columns(&self) -> (f64, f64) {
-        if self.steep { self.hull() } else { self.u }
+        if self.steep { self.hull } else { self.u }
     }
 
     /// The points (x, y) at which it begins and ends.

@@ -17,7 +17,7 @@
 //! An arc is cut where its main coordinate passes from one pixel to the next, or finer: between two places the chord
 //! takes its place, off by `|v″|/8n²` pixels at most for n steps a pixel. Half of [`CHORD`] is left on the mean.
 
-use super::arc::Arc;
+use super::arc::EdgeArc;
 
 /// Bits of a coordinate's fraction.
 const BITS: u32 = 16;
@@ -91,7 +91,7 @@ impl Cells {
     }
 
     /// Adds the shares of pixels that an arc covers.
-    pub(super) fn cover(&mut self, arc: &Arc) {
+    pub(super) fn cover(&mut self, arc: &EdgeArc) {
         if arc.steep {
             self.cover_steep(arc);
         } else {
@@ -99,7 +99,7 @@ impl Cells {
         }
     }
 
-    fn cover_steep(&mut self, arc: &Arc) {
+    fn cover_steep(&mut self, arc: &EdgeArc) {
         let (begin, end) = (self.down(arc.u.0), self.down(arc.u.1));
         let (first, last) = (begin.max(0), end.min(self.ends().1));
         if first >= last {
@@ -138,7 +138,7 @@ impl Cells {
         self.cover_in_row(from, to, arc.weight);
     }
 
-    fn cover_flat(&mut self, arc: &Arc) {
+    fn cover_flat(&mut self, arc: &EdgeArc) {
         let (begin, end) = (fixed(arc.u.0), fixed(arc.u.1));
         let (first, last) = (begin.max(0), end.min(self.ends().0));
         if first > last {
@@ -325,7 +325,7 @@ impl Cells {
 
     /// Turns on, for all pixels whose centres an arc passes on the left, the disk on its right. Pixels whose centres are
     /// within `doubt` of the arc are added to `doubtful`.
-    pub(super) fn cross(&mut self, arc: &Arc, doubt: f64, doubtful: &mut Vec<(u32, u32)>) {
+    pub(super) fn cross(&mut self, arc: &EdgeArc, doubt: f64, doubtful: &mut Vec<(u32, u32)>) {
         if arc.steep {
             self.cross_steep(arc, doubt, doubtful);
         } else {
@@ -354,7 +354,7 @@ impl Cells {
         self.add(row as usize, column, weight, ONE, ONE);
     }
 
-    fn cross_steep(&mut self, arc: &Arc, doubt: f64, doubtful: &mut Vec<(u32, u32)>) {
+    fn cross_steep(&mut self, arc: &EdgeArc, doubt: f64, doubtful: &mut Vec<(u32, u32)>) {
         let first = centres_above(self.down(arc.u.0)).max(0);
         let last = centres_above(self.down(arc.u.1)).min(self.rows as i64);
         for row in first..last {
@@ -371,7 +371,7 @@ impl Cells {
         }
     }
 
-    fn cross_flat(&mut self, arc: &Arc, doubt: f64, doubtful: &mut Vec<(u32, u32)>) {
+    fn cross_flat(&mut self, arc: &EdgeArc, doubt: f64, doubtful: &mut Vec<(u32, u32)>) {
         let first = centres_above(fixed(arc.u.0)).max(0);
         let last = centres_above(fixed(arc.u.1)).min(self.width as i64);
         let rows = self.rows as i64;
@@ -483,7 +483,7 @@ impl Cells {
 }
 
 /// How many steps a pixel an arc is cut into: a power of two.
-fn steps(arc: &Arc) -> i64 {
+fn steps(arc: &EdgeArc) -> i64 {
     let mut steps = 1;
     let mut off = arc.off_chord(1.0);
     while off > CHORD && steps < MOST_STEPS {

@@ -5,10 +5,10 @@ use std::sync::{Mutex, PoisonError};
 use rayon::prelude::*;
 
 use super::WHITE;
-use super::arc::Arc;
+use super::arc::EdgeArc;
 use super::cells::{Cells, ONE, fixed};
 use super::error::{RenderError, check_buffer};
-use super::path::Path;
+use super::path::OutlinePath;
 use super::projection::Projection;
 use crate::isoradial::{Boundary, Isoradials};
 use crate::scene::View;
@@ -35,7 +35,7 @@ pub enum Threads {
 /// The memory that frames are drawn with. Once it has drawn a frame, another one like it takes no more.
 #[derive(Debug, Default)]
 pub struct Workspace {
-    path: Path,
+    path: OutlinePath,
     /// Of each band, the arcs that pass it.
     arcs_of: Vec<Vec<u32>>,
     /// One for each thread.
@@ -48,20 +48,20 @@ struct Scratch {
     cells: Cells,
     /// Pixels of the band whose centres are too near to an arc: column and row.
     doubtful: Vec<(u32, u32)>,
-    /// The path's steps within the band: the first row that lies wholly below, and the weight.
-    steps: Vec<(usize, i32)>,
+    /// The path's crossings of the left side within the band: the first row that lies wholly below, and the weight.
+    left_crossings: Vec<(usize, i32)>,
 }
 
-/// A frame that is being drawn.
-struct Frame<'a> {
+/// A frame that is being drawn, band by band.
+struct Bands<'a> {
     view: &'a View,
     curves: &'a Isoradials,
     smooth: bool,
     /// How near to an arc a pixel's centre is doubtful.
     doubt: f64,
-    path: &'a Path,
+    path: &'a OutlinePath,
     arcs_of: &'a [Vec<u32>],
-    /// The winding number along the picture's left side, but for the path's steps.
+    /// The winding number along the picture's left side, without the path's crossings of it.
     left: i32,
     width: usize,
     height: usize,
@@ -92,7 +92,7 @@ impl Workspace {
         self.path.draw(&projection, tolerance, covers);
         let rows = (BAND / (size_of::<i64>() * width)).clamp(1, height);
         self.sort(height, rows);
-        let frame = Frame {
+        let frame = Bands {
             view,
             curves,
             smooth,
@@ -155,7 +155,7 @@ fn covers(boundary: &Boundary) -> i32 {
     i32::from(boundary.above.is_some()) - i32::from(boundary.below.is_some())
 }
 
-impl Frame<'_> {
+impl Bands<'_> {
     /// Draws a band.
     fn draw(&self, band: usize, pixels: &mut [u8], scratch: &mut Scratch) {
         let top = band * self.rows;
@@ -172,23 +172,25 @@ impl Frame<'_> {
             }
         }
         let mut left = self.left;
-        scratch.steps.clear();
-        for step in &self.path.steps {
+        scratch.left_crossings.clear();
+        for crossing in &self.path.left_crossings {
             let first = if self.smooth {
-                cells.cover_below(step.y, step.weight)
+                cells.cover_below(crossing.y, crossing.weight)
             } else {
-                cells.first_below(step.y)
+                cells.first_below(crossing.y)
             };
             if first <= 0 {
-                left += step.weight;
+                left += crossing.weight;
             } else if first < rows as i64 {
-                scratch.steps.push((first as usize, step.weight));
+                scratch
+                    .left_crossings
+                    .push((first as usize, crossing.weight));
             }
         }
-        scratch.steps.sort_unstable();
-        let mut steps = scratch.steps.iter().peekable();
+        scratch.left_crossings.sort_unstable();
+        let mut crossings = scratch.left_crossings.iter().peekable();
         for row in 0..rows {
-            while let Some((_, weight)) = steps.next_if(|&&(first, _)| first <= row) {
+            while let Some((_, weight)) = crossings.next_if(|&&(first, _)| first <= row) {
                 left += weight;
             }
             let pixels = &mut pixels[row * self.stride..][..self.width];
@@ -230,9 +232,9 @@ fn grey(share: i64) -> u8 {
     ((share * i64::from(WHITE) + ONE / 2) / ONE) as u8
 }
 
-/// The winding number along the picture's left side, but for the path's steps: that of one pixel, far from the path,
+/// The winding number along the picture's left side, without the path's crossings of it: that of one pixel, far from the path,
 /// which is asked what its centre sees, less all that the path adds on the way to it.
-fn left(path: &Path, view: &View, curves: &Isoradials) -> i32 {
+fn left(path: &OutlinePath, view: &View, curves: &Isoradials) -> i32 {
     /// Pixels that are looked at, at most.
     const MOST: u32 = 24;
     /// As far from the path as is wanted, in pixels.
@@ -265,7 +267,7 @@ fn centre((column, row): (u32, u32)) -> (f64, f64) {
 }
 
 /// How far a place is from the path, about: along rows for steep arcs and along columns for flat ones.
-fn distance(path: &Path, (x, y): (f64, f64)) -> f64 {
+fn distance(path: &OutlinePath, (x, y): (f64, f64)) -> f64 {
     path.arcs.iter().fold(f64::INFINITY, |least, arc| {
         let (u, v) = if arc.steep { (y, x) } else { (x, y) };
         let nearest = u.clamp(arc.u.0, arc.u.1);
@@ -274,13 +276,13 @@ fn distance(path: &Path, (x, y): (f64, f64)) -> f64 {
 }
 
 /// How much the path adds to the winding number along the picture's left side down to a place, and right to it.
-fn winding(path: &Path, (x, y): (f64, f64)) -> i32 {
+fn winding(path: &OutlinePath, (x, y): (f64, f64)) -> i32 {
     let is_below = |place: f64| i32::from(fixed(place) > fixed(y));
-    let steps = path
-        .steps
+    let from_left = path
+        .left_crossings
         .iter()
-        .map(|step| step.weight * (1 - is_below(step.y)));
-    let arcs = path.arcs.iter().map(|arc: &Arc| {
+        .map(|crossing| crossing.weight * (1 - is_below(crossing.y)));
+    let arcs = path.arcs.iter().map(|arc: &EdgeArc| {
         let passes = if arc.steep {
             let passes = is_below(arc.u.1) - is_below(arc.u.0);
             if passes != 0 && arc.at(y) < x {
@@ -296,5 +298,5 @@ fn winding(path: &Path, (x, y): (f64, f64)) -> i32 {
         };
         arc.weight * passes
     });
-    steps.chain(arcs).sum()
+    from_left.chain(arcs).sum()
 }

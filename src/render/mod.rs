@@ -38,9 +38,11 @@ mod path;
 pub mod pixelwise;
 mod projection;
 mod renderer;
+mod scene_frame;
 
 pub use error::RenderError;
-pub use renderer::{FrameReport, Renderer};
+pub use renderer::Renderer;
+pub use scene_frame::FrameReport;
 
 /// White: the disk.
 pub const WHITE: u8 = 255;

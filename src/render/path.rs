@@ -7,7 +7,7 @@
 //!
 //! Nothing is closed off the picture. A part that is beyond one of the picture's sides is left out, and the path may
 //! begin and end anywhere out there. What that changes is how the disk lies along the picture's left side:
-//! an arc's end that is left of it stands in for all that was left out, as a [`Step`].
+//! an arc's end that is left of it stands in for all that was left out, as a [`LeftCrossing`].
 //!
 //! # What is beyond a side
 //! Of each side there is a linear form of `(κ, cos α, sin α)` that is negative beyond it, whether ahead of the camera or
@@ -17,7 +17,7 @@
 //! greatest values at the ends and of their sizes times these. Where that is negative, no ray of the wedge's curve is
 //! in the picture. A wedge of which some part is behind the camera is halved until each half is ahead or beyond a side.
 
-use super::arc::Arc;
+use super::arc::EdgeArc;
 use super::projection::{Azimuth, Place, Projection, Quadrant};
 use crate::isoradial::{Boundary, Sector};
 
@@ -34,12 +34,12 @@ const PERSPECTIVE: f64 = 8.0;
 const SHORT: f64 = 1.0 / 1024.0;
 
 /// Ends of arcs this near to the picture's left side, in pixels, count as beyond it: the path may end on the side
-/// itself, up to rounding. Two arcs that meet so near to it leave steps that cancel.
+/// itself, up to rounding. Two arcs that meet so near to it leave crossings that cancel.
 const AT_LEFT: f64 = 0.25;
 
 /// Where the disk begins or ends along the picture's left side, going down.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Step {
+pub(super) struct LeftCrossing {
     /// Rows from the top.
     pub(super) y: f64,
     /// How much more of the disk there is from there on: 1 or −1.
@@ -48,9 +48,9 @@ pub(super) struct Step {
 
 /// The outline of the disk's image in the picture.
 #[derive(Debug, Default)]
-pub(super) struct Path {
-    pub(super) arcs: Vec<Arc>,
-    pub(super) steps: Vec<Step>,
+pub(super) struct OutlinePath {
+    pub(super) arcs: Vec<EdgeArc>,
+    pub(super) left_crossings: Vec<LeftCrossing>,
     /// The ends of boundaries at this junction and at the next: azimuths at which the boundaries change.
     junction: Vec<End>,
     next_junction: Vec<End>,
@@ -66,7 +66,7 @@ struct End {
     weight: i32,
 }
 
-impl Path {
+impl OutlinePath {
     /// Draws the outline in a view, right to `tolerance` pixels. `weight` tells how much more of what is drawn there is
     /// on the greater κ's side of a boundary than on the other: 1, 0 or −1.
     pub(super) fn draw(
@@ -76,7 +76,7 @@ impl Path {
         weight: impl Fn(&Boundary) -> i32,
     ) {
         self.arcs.clear();
-        self.steps.clear();
+        self.left_crossings.clear();
         let mut pen = Pen {
             projection,
             sides: projection.sides(),
@@ -94,12 +94,12 @@ struct Pen<'a> {
     projection: &'a Projection<'a>,
     sides: [[f64; 3]; 4],
     tolerance: f64,
-    path: &'a mut Path,
+    path: &'a mut OutlinePath,
 }
 
 /// A boundary that is walked, and the weight of its arcs.
 #[derive(Clone, Copy)]
-struct Track<'a> {
+struct BoundaryWalk<'a> {
     quadrant: Quadrant,
     boundary: &'a Boundary,
     weight: i32,
@@ -133,7 +133,7 @@ impl Pen<'_> {
                     let weight = side * weight(boundary);
                     if weight != 0 && !projection.is_at_the_camera(quadrant, boundary) {
                         self.track(
-                            Track {
+                            BoundaryWalk {
                                 quadrant,
                                 boundary,
                                 weight,
@@ -181,7 +181,7 @@ impl Pen<'_> {
         }
         if is_level(&[a[0], b[0]]) {
             let point = |[w, wx, wy]: [f64; 3]| (wx / w, wy / w);
-            if let Some(arc) = Arc::straight(point(a), point(b), weight) {
+            if let Some(arc) = EdgeArc::straight(point(a), point(b), weight) {
                 self.push(&arc);
             }
             return;
@@ -197,7 +197,7 @@ impl Pen<'_> {
     }
 
     /// Draws a boundary between two azimuths.
-    fn track(&mut self, track: Track<'_>, from: Azimuth, to: Azimuth) {
+    fn track(&mut self, track: BoundaryWalk<'_>, from: Azimuth, to: Azimuth) {
         let place = |azimuth| {
             self.projection
                 .place(track.quadrant, track.boundary, azimuth)
@@ -214,14 +214,14 @@ impl Pen<'_> {
     }
 
     /// Draws a boundary between two places on it.
-    fn wedge(&mut self, track: Track<'_>, from: &Place, to: &Place, depth: u32) {
+    fn wedge(&mut self, track: BoundaryWalk<'_>, from: &Place, to: &Place, depth: u32) {
         if self.is_beyond(track, from, to) {
             return;
         }
         let ahead = is_level(&[from.seen[0], to.seen[0]]);
         if depth > DEEPEST || (ahead && (from.x - to.x).abs().max((from.y - to.y).abs()) <= SHORT) {
             if let Some(arc) =
-                Arc::straight((from.x, from.y), (to.x, to.y), track.weight).filter(|_| ahead)
+                EdgeArc::straight((from.x, from.y), (to.x, to.y), track.weight).filter(|_| ahead)
             {
                 self.push(&arc);
             }
@@ -235,7 +235,7 @@ impl Pen<'_> {
             && from.azimuth.cosine_to(to.azimuth) >= WIDEST
             && is_level(&[from.seen[0], middle.seen[0], to.seen[0]])
         {
-            Arc::new(from, &middle, to, track.weight, self.tolerance)
+            EdgeArc::new(from, &middle, to, track.weight, self.tolerance)
         } else {
             None
         };
@@ -249,7 +249,7 @@ impl Pen<'_> {
 
     /// Whether all of a boundary between two places is beyond one of the picture's sides: see the
     /// [module's page](self).
-    fn is_beyond(&self, track: Track<'_>, from: &Place, to: &Place) -> bool {
+    fn is_beyond(&self, track: BoundaryWalk<'_>, from: &Place, to: &Place) -> bool {
         let ([w0, x0, y0], [w1, x1, y1]) = (from.seen, to.seen);
         let (width, height) = (self.projection.width, self.projection.height);
         let beyond = [
@@ -285,7 +285,7 @@ impl Pen<'_> {
     }
 
     /// Adds an arc, if it is in the picture.
-    fn push(&mut self, arc: &Arc) {
+    fn push(&mut self, arc: &EdgeArc) {
         let (rows, columns) = (arc.rows(), arc.columns());
         let (width, height) = (self.projection.width, self.projection.height);
         if rows.1 < 0.0 || rows.0 > height || columns.1 < 0.0 || columns.0 > width {
@@ -296,7 +296,7 @@ impl Pen<'_> {
         // The path comes up along the left side to an arc that begins beyond it, and goes down where one ends there.
         for ((x, y), weight) in [(first, -arc.weight), (last, arc.weight)] {
             if x <= AT_LEFT {
-                self.path.steps.push(Step { y, weight });
+                self.path.left_crossings.push(LeftCrossing { y, weight });
             }
         }
     }

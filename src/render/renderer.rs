@@ -1,14 +1,14 @@
 //! The renderer: a scene in, its pixels out.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use image::GrayImage;
 
 use super::batch::{self, Curved, DrawnFrame, Sharing};
 use super::error::{RenderError, blank};
 use super::frame::{Threads, Workspace};
-use super::pixelwise;
-use crate::isoradial::{EdgeError, Isoradials, Sight};
+use super::scene_frame::{FrameReport, SceneFrame};
+use crate::isoradial::{Isoradials, Sight};
 use crate::orbit::path::SweptAngles;
 use crate::scene::{Animation, Scene, View};
 use crate::table::{Lookup, Table};
@@ -43,19 +43,6 @@ pub struct Renderer<A> {
     /// The curves of the scene before.
     curves: Option<Isoradials>,
     workspace: Workspace,
-}
-
-/// What a frame took, and how accurate it is.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct FrameReport {
-    /// The time for curves that no frame before had.
-    pub curves: Duration,
-    /// The time for the pixels.
-    pub pixels: Duration,
-    /// How far an edge may be off, in pixels.
-    pub error: EdgeError,
-    /// Whether each pixel's ray was followed by itself, since no curves were accurate enough.
-    pub ray_by_ray: bool,
 }
 
 impl<'a> Renderer<Lookup<'a>> {
@@ -104,7 +91,7 @@ impl<A: SweptAngles> Renderer<A> {
         let kept = self.curves.take().filter(|curves| curves.serves(&sight));
         let curves = kept.unwrap_or_else(|| Isoradials::new(&sight, &self.angles));
         let curves = self.curves.insert(curves);
-        let frame = Frame {
+        let frame = SceneFrame {
             scene,
             view: &view,
             curves,
@@ -139,48 +126,4 @@ impl<A: SweptAngles> Renderer<A> {
         let sharing = Sharing::fastest(numbers.len() as u64, u64::MAX);
         batch::draw(&frames, numbers, sharing, |_| true, done)
     }
-}
-
-/// A frame whose curves are there.
-pub(super) struct Frame<'a, A> {
-    pub(super) scene: &'a Scene,
-    pub(super) view: &'a View,
-    pub(super) curves: &'a Isoradials,
-    pub(super) angles: &'a A,
-    pub(super) threads: Threads,
-}
-
-impl<A: SweptAngles> Frame<'_, A> {
-    /// Draws the frame from its curves, or ray by ray where these are not accurate enough.
-    ///
-    /// # Errors
-    /// [`RenderError::Buffer`]
-    pub(super) fn draw(
-        &self,
-        workspace: &mut Workspace,
-        pixels: &mut [u8],
-        stride: usize,
-    ) -> Result<FrameReport, RenderError> {
-        let start = Instant::now();
-        let error = self.curves.error();
-        let ray_by_ray = is_unresolved(error, self.scene.tolerance());
-        if ray_by_ray {
-            pixelwise::render_into(self.scene, self.view, self.angles, &|| (), pixels, stride)?;
-        } else {
-            let smooth = self.scene.antialias();
-            workspace.draw(self.view, self.curves, smooth, self.threads, pixels, stride)?;
-        }
-        Ok(FrameReport {
-            curves: Duration::ZERO,
-            pixels: start.elapsed(),
-            error,
-            ray_by_ray,
-        })
-    }
-}
-
-/// Whether curves fall short of what their angles and double precision allow: a disk of any width and a lens of any
-/// length bend them more than any number of nodes follows.
-fn is_unresolved(error: EdgeError, tolerance: f64) -> bool {
-    error.interpolation > tolerance && error.interpolation > 4.0 * (error.angles + error.rounding)
 }

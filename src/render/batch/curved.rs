@@ -10,7 +10,7 @@ use crate::orbit::path::SweptAngles;
 use crate::render::FrameReport;
 use crate::render::error::make_room;
 use crate::render::frame::{Threads, Workspace};
-use crate::render::renderer::Frame;
+use crate::render::scene_frame::SceneFrame;
 use crate::scene::{Animation, View};
 
 /// Frames whose pixels come from curves, and these from swept angles: of a table, or exact.
@@ -69,7 +69,7 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
                 &own
             }
         };
-        let frame = Frame {
+        let frame = SceneFrame {
             scene: &scene,
             view: &view,
             curves,
