@@ -8,7 +8,7 @@ use core::cell::RefCell;
 
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
-use darkness::render::{coverage, mask};
+use darkness::render::frame::{Threads, Workspace};
 use darkness::scene::{Scene, View, builtins};
 use darkness::table::{Lookup, Spec, Table};
 use interleaved::{Contender, compare};
@@ -50,16 +50,15 @@ fn frames_of(name: &str, scene: &Scene, lookup: &Lookup<'_>, rounds: usize) {
         std::hint::black_box(&mut *bytes).fill(0);
         f64::from(bytes[0])
     };
-    let hard = |buffer: &RefCell<Vec<u8>>| {
+    let workspace = RefCell::new(Workspace::default());
+    let draw = |buffer: &RefCell<Vec<u8>>, smooth: bool| {
         let bytes = &mut *buffer.borrow_mut();
-        let drawn = mask::render_into(&view, &curves, bytes, width);
+        let mut workspace = workspace.borrow_mut();
+        let drawn = workspace.draw(&view, &curves, smooth, Threads::This, bytes, width);
         drawn.map_or(0.0, |()| f64::from(bytes[pixels / 2]))
     };
-    let smooth = |buffer: &RefCell<Vec<u8>>| {
-        let bytes = &mut *buffer.borrow_mut();
-        let drawn = coverage::render_into(&view, &curves, bytes, width);
-        drawn.map_or(0.0, |()| f64::from(bytes[pixels / 2]))
-    };
+    let hard = |buffer: &RefCell<Vec<u8>>| draw(buffer, false);
+    let smooth = |buffer: &RefCell<Vec<u8>>| draw(buffer, true);
     compare(
         &format!("{name}, time per pixel"),
         pixels,

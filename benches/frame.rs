@@ -54,7 +54,7 @@ fn main() {
             let sight = Sight::new(&scene, &view, scene.tolerance());
             let curves = Isoradials::new(&sight, &lookup);
             println!(
-                "{}: {} orders, {} bytes of curves, wrong pixels of RK4: {}, of the tiles: {}",
+                "{}: {} orders, {} bytes of curves, wrong pixels of RK4: {}, of the outline: {}",
                 builtin.name(),
                 curves.orders().len(),
                 curves.bytes(),

@@ -8,7 +8,7 @@ use darkness::cli::FrameRange;
 use darkness::isoradial::{Isoradials, Sight};
 use darkness::orbit::exact::Exact;
 use darkness::render::batch::{self, Curved, DrawnFrame, Sharing};
-use darkness::render::{coverage, mask};
+use darkness::render::frame::{Threads, Workspace};
 use darkness::scene::{Animation, Scene, View, builtins};
 use interleaved::{Contender, compare};
 use rayon::prelude::*;
@@ -56,13 +56,11 @@ fn main() {
         let curves = Isoradials::new(&Sight::new(&scene, &view, scene.tolerance()), &Exact);
         let pixels = width as usize * height as usize;
         for antialias in [false, true] {
-            let (mut first, mut second) = (vec![0_u8; pixels], vec![0_u8; pixels]);
-            let draw = |frame: &mut [u8]| {
-                let drawn = if antialias {
-                    coverage::render_into(&view, &curves, frame, width as usize)
-                } else {
-                    mask::render_into(&view, &curves, frame, width as usize)
-                };
+            let memory = || (vec![0_u8; pixels], Workspace::default());
+            let (mut first, mut second) = (memory(), memory());
+            let draw = |(frame, workspace): &mut (Vec<u8>, Workspace)| {
+                let width = width as usize;
+                let drawn = workspace.draw(&view, &curves, antialias, Threads::All, frame, width);
                 drawn.map_or(0.0, |()| f64::from(frame[pixels / 2]))
             };
             let edges = if antialias { "smooth" } else { "hard" };
