@@ -1,27 +1,27 @@
-//! Frames from isoradial curves, which are drawn once for each span of frames.
+//! Frames from isoradial curves, which are built once for each span of frames.
 
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use super::spans::Block;
 use super::{Effort, FrameError, Frames};
-use crate::isoradial::{EdgeError, Isoradials, Sight};
+use crate::isoradial::{CurveSpec, EdgeError, Isoradials};
 use crate::orbit::path::SweptAngles;
 use crate::render::frame::{Threads, Workspace};
 use crate::render::{blank_into, locked, pixelwise};
 use crate::scene::{Animation, View};
 
-/// Frames whose pixels come from curves, and these from swept angles: of a table, or exact.
+/// Frames from curves, which come from swept angles: exact ones, or those of a table.
 #[derive(Debug)]
 pub struct Curved<'a, A> {
     animation: &'a Animation,
     angles: &'a A,
-    /// The spans last asked for.
+    /// The block of the frame drawn last.
     block: Mutex<Option<Arc<Block>>>,
 }
 
 impl<'a, A: SweptAngles> Curved<'a, A> {
-    /// The frames of `animation`.
+    /// Creates the frames of `animation`.
     pub fn new(animation: &'a Animation, angles: &'a A) -> Self {
         Self {
             animation,
@@ -30,6 +30,7 @@ impl<'a, A: SweptAngles> Curved<'a, A> {
         }
     }
 
+    /// Returns the block that a frame is in.
     fn block(&self, number: u32) -> Arc<Block> {
         let mut kept = locked(&self.block);
         match &*kept {
@@ -58,12 +59,12 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
         let own;
         let curves = match block.span(number) {
             Some(span) if span.is_shared() => {
-                let draw = || Isoradials::new(&span.sight, self.angles);
+                let draw = || Isoradials::new(&span.spec, self.angles);
                 span.curves.get_or_init(draw)
             }
             _ => {
-                let sight = Sight::new(&scene, &view, scene.tolerance());
-                own = Isoradials::new(&sight, self.angles);
+                let spec = CurveSpec::new(&scene, &view, scene.tolerance());
+                own = Isoradials::new(&spec, self.angles);
                 &own
             }
         };
@@ -71,7 +72,7 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
         let error = curves.error();
         let unresolved = is_unresolved(error, scene.tolerance());
         if unresolved {
-            // Two frames are not held at a time.
+            // Frees this frame's memory first, so that two frames are never held at a time.
             *pixels = Vec::new();
             *pixels = pixelwise::render(&scene, &view, self.angles, &|| ())?;
         } else {
@@ -92,8 +93,8 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
     }
 }
 
-/// Whether the curves fall short of what their angles and the arithmetic allow: where a disk of any width and a lens
-/// of any length bend them more than any number of nodes follows.
+/// Returns whether the curves are less accurate than their angles and the arithmetic allow. Very wide disks and very
+/// long lenses bend them more than the greatest number of nodes can follow.
 fn is_unresolved(error: EdgeError, allowed: f64) -> bool {
     error.interpolation > allowed && error.interpolation > 4.0 * (error.angles + error.rounding)
 }
