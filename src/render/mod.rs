@@ -4,7 +4,7 @@
 //! A viewer or an encoder has frames drawn into memory of its own:
 //!
 //! ```
-//! use darkness::isoradial::{Isoradials, Sight};
+//! use darkness::isoradial::{Isoradials, CurveSpec};
 //! use darkness::orbit::exact::Exact;
 //! use darkness::render::coverage;
 //! use darkness::scene::{Scene, View};
@@ -12,7 +12,7 @@
 //! let scene = Scene::builtin("classic").unwrap().with_size(320, 180)?;
 //! let view = View::new(&scene);
 //! // From a table's lookup in place of Exact in half the time.
-//! let curves = Isoradials::new(&Sight::new(&scene, &view, scene.tolerance()), &Exact);
+//! let curves = Isoradials::new(&CurveSpec::new(&scene, &view, scene.tolerance()), &Exact);
 //! // Rows of 320 bytes, 512 apart.
 //! let mut memory = vec![0; 512 * 180];
 //! coverage::render_into(&view, &curves, &mut memory, 512)?;
