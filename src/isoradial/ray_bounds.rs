@@ -16,12 +16,12 @@ pub struct RayBounds {
 /// The amount by which bounds of x are widened: a pixel's own κ and x are rounded by a few ε.
 const ROUNDING: f64 = 1e-13;
 
-/// The share of its size by which each bound of a picture is widened, which takes more operations.
+/// The share of its size by which each bound of a picture is widened. These bounds take more operations.
 const PICTURE_ROUNDING: f64 = 1e-12;
 
 impl RayBounds {
     /// The bounds of all rays.
-    pub const ALL: Self = Self {
+    pub(super) const ALL: Self = Self {
         kappa: (f64::NEG_INFINITY, f64::INFINITY),
         cotangent: (f64::NEG_INFINITY, f64::INFINITY),
     };
@@ -30,7 +30,7 @@ impl RayBounds {
     /// angle between its centre and its corners.
     ///
     /// The picture's rectangle and the circle through its corners both bound the rays. The narrower bound is taken.
-    pub fn of_picture(view: &View, axis: f64, corner: f64) -> Self {
+    pub(super) fn of_picture(view: &View, axis: f64, corner: f64) -> Self {
         let rectangle = Self::of_rectangle(view).unwrap_or_else(|| {
             let most = view.n_a() / view.n_p().abs();
             let cotangent = if most.is_nan() {

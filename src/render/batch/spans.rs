@@ -13,7 +13,7 @@ const BLOCK: u32 = 256;
 
 /// The greatest ratio of the pixel sizes in a span. Smaller pixels need finer curves. Up to this ratio, sharing the
 /// finer ones is cheaper than building both.
-const ALIKE: f64 = 2.0;
+const MAX_PIXEL_RATIO: f64 = 2.0;
 
 /// A block of frames and its spans.
 #[derive(Debug)]
@@ -54,7 +54,7 @@ impl Block {
             let spec = CurveSpec::new(&scene, &View::new(&scene), scene.tolerance());
             if let Some(span) = spans.last_mut()
                 && span.last + 1 == number
-                && (pixel / ALIKE..=pixel * ALIKE).contains(&spec.pixel)
+                && (pixel / MAX_PIXEL_RATIO..=pixel * MAX_PIXEL_RATIO).contains(&spec.pixel)
                 && let Some(both) = span.spec.union(&spec)
             {
                 span.last = number;
