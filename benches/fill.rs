@@ -6,7 +6,7 @@ mod interleaved;
 
 use core::cell::RefCell;
 
-use darkness::isoradial::{Isoradials, Sight};
+use darkness::isoradial::{CurveSpec, Isoradials};
 use darkness::orbit::exact::Exact;
 use darkness::render::frame::{Threads, Workspace};
 use darkness::scene::{Scene, View, builtins};
@@ -37,8 +37,8 @@ fn main() {
 
 fn frames_of(name: &str, scene: &Scene, lookup: &Lookup<'_>, rounds: usize) {
     let view = View::new(scene);
-    let sight = Sight::new(scene, &view, scene.tolerance());
-    let curves = Isoradials::new(&sight, lookup);
+    let spec = CurveSpec::new(scene, &view, scene.tolerance());
+    let curves = Isoradials::new(&spec, lookup);
     let width = view.width() as usize;
     let pixels = width * view.height() as usize;
     // One buffer, which is as near in the caches for one contender as for another.
@@ -78,11 +78,11 @@ fn frames_of(name: &str, scene: &Scene, lookup: &Lookup<'_>, rounds: usize) {
             },
             Contender {
                 name: "the curves from exact",
-                run: Box::new(|| Isoradials::new(&sight, &Exact).nodes() as f64),
+                run: Box::new(|| Isoradials::new(&spec, &Exact).nodes() as f64),
             },
             Contender {
                 name: "the curves",
-                run: Box::new(|| Isoradials::new(&sight, lookup).nodes() as f64),
+                run: Box::new(|| Isoradials::new(&spec, lookup).nodes() as f64),
             },
         ],
     );

@@ -5,7 +5,7 @@
 
 mod interleaved;
 
-use darkness::isoradial::{Isoradials, Sight};
+use darkness::isoradial::{CurveSpec, Isoradials};
 use darkness::orbit::exact::Exact;
 use darkness::orbit::integrate::{FixedStep, Scheme};
 use darkness::render::mask::{WHITE, render, render_every_pixel};
@@ -51,8 +51,8 @@ fn main() {
             };
             let view = View::new(&scene);
             let pixels = view.width() as usize * view.height() as usize;
-            let sight = Sight::new(&scene, &view, scene.tolerance());
-            let curves = Isoradials::new(&sight, &lookup);
+            let spec = CurveSpec::new(&scene, &view, scene.tolerance());
+            let curves = Isoradials::new(&spec, &lookup);
             println!(
                 "{}: {} orders, {} bytes of curves, wrong pixels of RK4: {}, of the outline: {}",
                 builtin.name(),
@@ -82,7 +82,7 @@ fn main() {
                     Contender {
                         name: "curves and frame",
                         run: Box::new(|| {
-                            white(&drawn(render(&view, &Isoradials::new(&sight, &lookup))))
+                            white(&drawn(render(&view, &Isoradials::new(&spec, &lookup))))
                         }),
                     },
                     Contender {
@@ -95,7 +95,7 @@ fn main() {
                     },
                     Contender {
                         name: "the curves alone",
-                        run: Box::new(|| Isoradials::new(&sight, &lookup).nodes() as f64),
+                        run: Box::new(|| Isoradials::new(&spec, &lookup).nodes() as f64),
                     },
                     Contender {
                         name: "filling the same bytes",

@@ -5,7 +5,7 @@
 mod interleaved;
 
 use darkness::cli::FrameRange;
-use darkness::isoradial::{Isoradials, Sight};
+use darkness::isoradial::{CurveSpec, Isoradials};
 use darkness::orbit::exact::Exact;
 use darkness::render::batch::{self, Curved, DrawnFrame, Sharing};
 use darkness::render::frame::{Threads, Workspace};
@@ -53,7 +53,7 @@ fn main() {
             return;
         };
         let view = View::new(&scene);
-        let curves = Isoradials::new(&Sight::new(&scene, &view, scene.tolerance()), &Exact);
+        let curves = Isoradials::new(&CurveSpec::new(&scene, &view, scene.tolerance()), &Exact);
         let pixels = width as usize * height as usize;
         for antialias in [false, true] {
             let memory = || (vec![0_u8; pixels], Workspace::default());

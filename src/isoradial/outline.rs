@@ -17,8 +17,8 @@
 //! * else the interval is halved, until it is shorter than [`SHORTEST`]. Two crossings nearer to each other than that
 //!   are left out: between them an order as thin as rounding would be in front.
 
-use super::Edge;
-use super::piece::Piece;
+use super::edge::Edge;
+use super::quarter_curves::QuarterCurves;
 
 /// No interval of x is halved that is shorter than this.
 const SHORTEST: f64 = 1e-13;
@@ -46,7 +46,7 @@ pub(crate) struct Sector {
 }
 
 /// The sectors of one quarter turn, by rising x.
-pub(super) fn sectors(pieces: &[Piece]) -> Vec<Sector> {
+pub(super) fn sectors(pieces: &[QuarterCurves]) -> Vec<Sector> {
     let Some(first) = pieces.first() else {
         return Vec::new();
     };
@@ -71,7 +71,7 @@ pub(super) fn sectors(pieces: &[Piece]) -> Vec<Sector> {
 
 /// The curves of one quarter turn.
 struct Curves<'a> {
-    pieces: &'a [Piece],
+    pieces: &'a [QuarterCurves],
 }
 
 /// A curve: its piece, its edge.
@@ -79,7 +79,7 @@ type Curve = (usize, Edge);
 
 /// Two curves of different orders, over an interval of x.
 struct Pair<'a> {
-    curves: [(&'a Piece, Edge); 2],
+    curves: [(&'a QuarterCurves, Edge); 2],
     /// Whether they are compared as `x h`.
     scaled: bool,
 }

@@ -1,37 +1,36 @@
-//! Bounds of the rays that a picture shows.
+//! Bounds of the rays in a picture.
 
-use core::f64::consts::PI;
-
+use super::ray_angles::cotangent_of;
 use crate::scene::{Affine, View};
 
-/// Bounds of a set of rays: an interval of κ, and one of `D/N`, the cotangent of φ₁ (see the [module's page](super)).
+/// Bounds of a set of rays: an interval of κ, and an interval of `D/N`, the cotangent of φ₁ (see the
+/// [module's page](super)).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RayBounds {
-    /// Least and greatest `κ = z/s`.
+    /// The least and the greatest `κ = z/s`.
     pub kappa: (f64, f64),
-    /// Least and greatest `D/N`; ±∞ where N = 0.
+    /// The least and the greatest `D/N`; ±∞ where N = 0.
     pub cotangent: (f64, f64),
 }
 
-/// The share of its size by which each bound is widened: a pixel's own κ and x are rounded by a few ε.
+/// The amount by which bounds of x are widened: a pixel's own κ and x are rounded by a few ε.
 const ROUNDING: f64 = 1e-13;
 
-/// The same for the bounds of a whole picture, which take some more operations.
+/// The share of its size by which each bound of a picture is widened. These bounds take more operations.
 const PICTURE_ROUNDING: f64 = 1e-12;
 
 impl RayBounds {
-    /// Every ray there is.
-    pub const ALL: Self = Self {
+    /// The bounds of all rays.
+    pub(super) const ALL: Self = Self {
         kappa: (f64::NEG_INFINITY, f64::INFINITY),
         cotangent: (f64::NEG_INFINITY, f64::INFINITY),
     };
 
-    /// The rays of a picture. `axis` is the angle between its centre and the hole's direction, `corner` that between
-    /// its centre and its corners.
+    /// Bounds the rays of a picture. `axis` is the angle between its centre and the hole's direction, `corner` the
+    /// angle between its centre and its corners.
     ///
-    /// Both the picture's rectangle and the circle about its corners bound the rays; of each bound the narrower one
-    /// is taken.
-    pub fn of_picture(view: &View, axis: f64, corner: f64) -> Self {
+    /// The picture's rectangle and the circle through its corners both bound the rays. The narrower bound is taken.
+    pub(super) fn of_picture(view: &View, axis: f64, corner: f64) -> Self {
         let rectangle = Self::of_rectangle(view).unwrap_or_else(|| {
             let most = view.n_a() / view.n_p().abs();
             let cotangent = if most.is_nan() {
@@ -60,8 +59,8 @@ impl RayBounds {
         }
     }
 
-    /// The rays of a picture's rectangle, from the ray at its centre and the circle of transverse parts about it that
-    /// holds those of all others. None where that circle holds the ray straight at the hole or straight away from it.
+    /// Bounds the rays of a picture's rectangle. All their transverse parts lie in a circle about that of the central
+    /// ray. Returns `None` if that circle contains zero: the ray straight at the hole, or straight away from it.
     fn of_rectangle(view: &View) -> Option<Self> {
         let (z, ta, tb) = (view.z(), view.ta(), view.tb());
         let (half_x, half_y) = (view.x_at(f64::from(view.width())), view.y_at(0.0));
@@ -94,7 +93,7 @@ impl RayBounds {
         Some(Self { kappa, cotangent })
     }
 
-    /// The least bounds that hold both sets of rays.
+    /// Returns the narrowest bounds that contain both sets of rays.
     pub(super) fn union(&self, other: &Self) -> Self {
         let hull = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
         Self {
@@ -103,10 +102,10 @@ impl RayBounds {
         }
     }
 
-    /// The interval of x that the rays reach in each quarter turn, if they do.
+    /// Returns the interval of x that the rays reach in each of the two quarter turns, or `None` where they reach none.
     pub(super) fn quarters(&self) -> [Option<(f64, f64)>; 2] {
         let (least, greatest) = self.cotangent;
-        // x falls with the cotangent in the first quarter turn and rises with its size in the second.
+        // x falls with the cotangent in the first quarter turn, and rises with its size in the second.
         let first =
             (greatest >= 0.0).then(|| (1.0 / (1.0 + greatest), 1.0 / (1.0 + least.max(0.0))));
         let beyond = |cotangent: f64| {
@@ -122,18 +121,7 @@ impl RayBounds {
     }
 }
 
-/// κ at an angle from the hole's direction.
-fn cotangent_of(psi: f64) -> f64 {
-    if psi <= 0.0 {
-        f64::INFINITY
-    } else if psi >= PI {
-        f64::NEG_INFINITY
-    } else {
-        libm::cos(psi) / libm::sin(psi)
-    }
-}
-
-/// A bound lowered by a share of its size, or raised where the share is negative.
+/// Lowers a bound by a share of its size, or raises it if the share is negative.
 fn lowered(bound: f64, share: f64) -> f64 {
     if bound.is_finite() {
         bound - share * (1.0 + bound.abs())

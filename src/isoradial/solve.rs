@@ -1,88 +1,98 @@
-//! One point of an isoradial curve: the slope that carries a ray to a radius in a given angle.
+//! Solves for one point of an isoradial curve: the slope with which a ray reaches a radius in a given angle.
 //!
 //! # From a neighbour's slope
-//! A ray with `κ = κ_c + h` is a point of the curve itself: of the angle φ at which it meets the radius. So one swept
-//! angle tells how far the curve is off a guess, `h(φ*) = h + h′ (φ* − φ) + …`, and the slope h′ of the curve is known
-//! already from the nodes about it: no derivative of an angle is ever needed. If h′ is wrong by a share of
-//! `b |φ* − φ|`, what is left is `b |h′| (φ* − φ)²`; where that is too much, the next slope is the secant's, and what is
-//! left after it is at most what the two slopes disagree in.
+//! Every ray is a point of the curve at some angle: the ray with `κ = κ_c + h` at the angle φ at which it meets the
+//! radius. So one swept angle tells how far a guess is off, `h(φ*) = h + h′ (φ* − φ) + …`. The slope h′ of the curve is
+//! known from its neighbouring nodes, so no derivative of an angle is ever computed.
+//!
+//! If h′ is wrong by a share of `b |φ* − φ|`, the error after this step is `b |h′| (φ* − φ)²`. Where that is too much,
+//! the next step takes the secant's slope. The error after it is at most the difference of the two slopes times the
+//! missing angle.
 
-use super::{Edge, Sight};
+use super::curve_spec::CurveSpec;
+use super::edge::Edge;
 use crate::orbit::Fate;
 use crate::orbit::invariants::{Orbit, RadialLeg};
 use crate::orbit::path::{Branch, Crossings, FixedRadiiAngles, SweptAngles, ahead, turns};
 
-/// From where, to which radius.
+/// Solves for points of one curve: rays of one camera radius that meet one radius of the disk.
 #[derive(Debug, Clone)]
-pub(super) struct Target<B> {
+pub(super) struct CurveSolver<B> {
     u0: f64,
     slope_scale: f64,
-    /// κ of the critical ray,
+    /// κ of the critical ray.
     pub(super) critical: f64,
-    /// and its slope.
+    /// du/dφ of the critical ray.
     critical_slope: f64,
-    /// Inverse radius to be met.
+    /// The inverse radius to be met.
     u_disk: f64,
-    /// There from `u0`.
-    way: RadialLeg,
+    /// The way from `u0` to `u_disk`.
+    leg: RadialLeg,
     angles: B,
 }
 
-/// Where a curve may be, and how steep.
+/// A guess of a point of a curve.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Guess {
+pub(super) struct CurveGuess {
     pub(super) h: f64,
-    /// dh/dφ; not a number where nothing is known of it.
+    /// dh/dφ, or NaN where it is unknown.
     pub(super) slope: f64,
-    /// By what share of itself the slope may be wrong for each radian that the guess is off.
+    /// The relative error of the slope for each radian by which the guess is off.
     pub(super) blur: f64,
-    /// The way that the neighbours take.
+    /// The branch of the neighbouring points.
     pub(super) branch: Branch,
 }
 
-/// A point of the curve.
+/// A point of a curve.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Found {
+pub(super) struct CurvePoint {
     pub(super) h: f64,
-    /// dh/dφ about there; not a number where nothing is known of it.
+    /// dh/dφ near the point, or NaN where it is unknown.
     pub(super) slope: f64,
-    /// The way that the ray takes there.
+    /// The branch on which the ray meets the radius.
     pub(super) branch: Branch,
 }
 
-/// How right a point has to be: whichever is less strict.
+/// The allowed error of a point. Meeting one of the two is enough.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Closeness {
+pub(super) struct SolveTolerance {
     /// In radians between rays.
     pub(super) psi: f64,
-    /// In radians of φ; of the coarsest nodes, over the distance to the next.
+    /// In radians of φ; for the coarsest nodes, as a share of the distance to the next node.
     pub(super) phi: f64,
 }
 
-/// An edge of the disk, seen by the camera of `sight`.
-pub(super) fn target<A: SweptAngles>(
-    sight: &Sight,
+/// Creates the solver for an edge of the disk, seen by the camera of `spec`.
+pub(super) fn curve_solver<A: SweptAngles>(
+    spec: &CurveSpec,
     edge: Edge,
     angles: &A,
-) -> Target<impl FixedRadiiAngles> {
+) -> CurveSolver<impl FixedRadiiAngles> {
     let u_disk = match edge {
-        Edge::Inner => sight.u_inner,
-        Edge::Outer => sight.u_outer,
+        Edge::Inner => spec.u_inner,
+        Edge::Outer => spec.u_outer,
     };
-    Target {
-        u0: sight.u0,
-        slope_scale: sight.slope_scale,
-        critical: sight.critical(),
-        critical_slope: sight.slope_scale * sight.critical(),
+    CurveSolver {
+        u0: spec.u0,
+        slope_scale: spec.slope_scale,
+        critical: spec.critical(),
+        critical_slope: spec.slope_scale * spec.critical(),
         u_disk,
-        way: RadialLeg::new(sight.u0, u_disk),
-        angles: angles.between(sight.u0, u_disk),
+        leg: RadialLeg::new(spec.u0, u_disk),
+        angles: angles.between(spec.u0, u_disk),
     }
 }
 
-impl<B: FixedRadiiAngles> Target<B> {
-    /// A guess of h for the ray that meets the radius at `angle`: flat space's ray in the first half turn, where `u =
-    /// u0 cos φ + w sin φ`, and the rings' decay towards the critical ray beyond.
+/// Returns `κ − κ_c` of the ray that reaches an edge in a given angle, as right as the method's angles are. `angle` is
+/// above 0; it is the `φ₁ + kπ` of [`Isoradials::height`](super::Isoradials::height).
+pub fn height_at(spec: &CurveSpec, edge: Edge, angle: f64, angles: &impl SweptAngles) -> f64 {
+    let solver = curve_solver(spec, edge, angles);
+    solver.bracket(angle, solver.first_guess(angle), 1e-13).0
+}
+
+impl<B: FixedRadiiAngles> CurveSolver<B> {
+    /// Guesses h of the ray that meets the radius at `angle`. In the first half turn it is the ray of flat space,
+    /// `u = u0 cos φ + w sin φ`. Beyond, the guess decays towards the critical ray as the photon rings do.
     pub(super) fn first_guess(&self, angle: f64) -> f64 {
         if angle < core::f64::consts::PI {
             let flat = (self.u_disk / self.u0 - libm::cos(angle)) / libm::sin(angle).max(0.1);
@@ -92,7 +102,8 @@ impl<B: FixedRadiiAngles> Target<B> {
         }
     }
 
-    /// The orbit with `κ = κ_c + h`. `Δ = (w − w_c)(w + w_c)` from h itself: exact however close to critical.
+    /// Returns the orbit with `κ = κ_c + h`. `Δ = (w − w_c)(w + w_c)` is computed from h itself, so that it keeps its
+    /// digits however close to critical the orbit is.
     #[inline(always)]
     fn orbit(&self, h: f64) -> Orbit {
         let excess = self.slope_scale * h;
@@ -103,28 +114,28 @@ impl<B: FixedRadiiAngles> Target<B> {
         )
     }
 
-    /// Positive where the ray of `h` is closer to the hole than the radius sought when it has swept `angle`; rises
-    /// with h (see the [module above](super)), through zero where it is just there. The size is the angle that is
-    /// missing. Infinite where the ray never meets the radius.
+    /// Returns the angle by which the ray of `h` misses the radius after it has swept `angle`: positive where it is
+    /// closer to the hole, negative where it is farther away. It rises with h (see the [module above](super)). It is
+    /// infinite where the ray never meets the radius.
     fn residual(&self, h: f64, angle: f64) -> f64 {
         let orbit = self.orbit(h);
-        let Crossings { inbound, outbound } = self.angles.crossings(&orbit, self.way.end(&orbit));
+        let Crossings { inbound, outbound } = self.angles.crossings(&orbit, self.leg.end(&orbit));
         match (inbound, outbound) {
             (Some(enter), Some(leave)) => (angle - enter).min(leave - angle),
             (Some(enter), None) => angle - enter,
             (None, Some(leave)) => leave - angle,
-            // Never there: all the way inside the radius, or all the way outside.
+            // The ray stays within the radius, or outside it.
             (None, None) if orbit.fate() == Fate::Capture => f64::INFINITY,
             (None, None) => f64::NEG_INFINITY,
         }
     }
 
-    /// The angle at which the ray of `h` meets the radius, and the way that it takes there: `branch`, where it does
-    /// so twice.
+    /// Returns the angle at which the ray of `h` meets the radius, and on which branch. Where it meets the radius
+    /// twice, `branch` selects one.
     #[inline(always)]
     fn swept(&self, h: f64, branch: Branch) -> Option<(f64, Branch)> {
         let orbit = self.orbit(h);
-        let point = self.way.end(&orbit)?;
+        let point = self.leg.end(&orbit)?;
         let taken = match (ahead(&orbit, self.u_disk), turns(&orbit)) {
             (true, true) => branch,
             (true, false) => Branch::Direct,
@@ -138,26 +149,31 @@ impl<B: FixedRadiiAngles> Target<B> {
         Some((swept, taken))
     }
 
-    /// What is kept at x = 0 in the piece with the pole: φ → 0, where `w φ → u_d − u0`, and x ~ φ.
+    /// Returns the limit of `x h` at the pole: as φ → 0, `w φ → u_d − u0` and x ~ φ.
     pub(super) fn at_pole(&self) -> f64 {
         (self.u_disk - self.u0) / self.slope_scale
     }
 
-    /// The ray that meets the radius at `angle`, from a guess of it: see the [module's page](self).
-    pub(super) fn follow(&self, angle: f64, guess: Guess, closeness: Closeness) -> Found {
-        self.converge(angle, guess, closeness)
-            .unwrap_or_else(|| self.search(angle, guess, closeness))
+    /// Returns the point of the curve at `angle`, from a guess of it (see the [module's page](self)).
+    pub(super) fn follow(
+        &self,
+        angle: f64,
+        guess: CurveGuess,
+        tolerance: SolveTolerance,
+    ) -> CurvePoint {
+        self.converge(angle, guess, tolerance)
+            .unwrap_or_else(|| self.search(angle, guess, tolerance))
     }
 
-    /// The same, where the way or the guess is a wrong one.
+    /// Does the same where the branch or the guess is wrong.
     #[cold]
-    fn search(&self, angle: f64, guess: Guess, closeness: Closeness) -> Found {
-        // Where both ways meet, the rays graze the radius: if it was not the one way, it may be the other now.
-        let other = Guess {
+    fn search(&self, angle: f64, guess: CurveGuess, tolerance: SolveTolerance) -> CurvePoint {
+        // The two branches meet where rays graze the radius. Neighbouring points may lie on either side.
+        let other = CurveGuess {
             branch: guess.branch.other(),
             ..guess
         };
-        if let Some(found) = self.converge(angle, other, closeness) {
+        if let Some(found) = self.converge(angle, other, tolerance) {
             return found;
         }
         let h = if guess.h.is_finite() {
@@ -166,34 +182,39 @@ impl<B: FixedRadiiAngles> Target<B> {
             self.first_guess(angle)
         };
         let (h, slope) = self.bracket(angle, h, 1e-4);
-        // Its slope is that of the angle that is missing: h rises with what a ray sweeps on its way out, and falls with
-        // what it sweeps on its way in.
-        for Guess { branch, .. } in [guess, other] {
+        // The bracket's slope is dh over the residual. On the way out the swept angle rises with the residual, on the
+        // way in it falls.
+        for CurveGuess { branch, .. } in [guess, other] {
             for slope in [slope, -slope] {
-                let guess = Guess {
+                let guess = CurveGuess {
                     h,
                     slope,
                     blur: f64::INFINITY,
                     branch,
                 };
-                if let Some(found) = self.converge(angle, guess, closeness) {
+                if let Some(found) = self.converge(angle, guess, tolerance) {
                     return found;
                 }
             }
         }
-        Found {
+        CurvePoint {
             h: self.bracket(angle, h, 1e-13).0,
             slope: f64::NAN,
             branch: guess.branch,
         }
     }
 
-    /// Newton's step with the guess's slope, and secant steps after it; none where they do not settle.
+    /// Takes a Newton step with the guess's slope, and secant steps after it. Returns `None` if they do not converge.
     #[inline(always)]
-    fn converge(&self, angle: f64, guess: Guess, closeness: Closeness) -> Option<Found> {
-        /// A secant that has not settled by then will not.
+    fn converge(
+        &self,
+        angle: f64,
+        guess: CurveGuess,
+        tolerance: SolveTolerance,
+    ) -> Option<CurvePoint> {
+        /// Secants that have not converged by then will not.
         const STEPS: usize = 8;
-        let Guess {
+        let CurveGuess {
             mut h,
             mut slope,
             blur,
@@ -214,16 +235,16 @@ impl<B: FixedRadiiAngles> Target<B> {
             let step = slope * missing;
             let next = h + step;
             let left = doubt * missing.abs();
-            // The farthest of the two from straight across, where h is fewest radians, may not be there.
+            // An angle of one radian is `1 + κ²` in h. The lesser |κ| of the two is the safe choice.
             let kappa = (self.critical + h).abs().min((self.critical + next).abs());
-            // Far away from the curve, where all rays are nearly straight, every estimate is small.
-            let near =
+            // Far from the curve all rays are nearly straight, and the estimates below would be too small.
+            let is_near =
                 next.is_finite() && doubt <= 0.25 * slope.abs() && missing.abs() <= 0.25 * angle;
-            let close = left <= closeness.psi * (1.0 + kappa * kappa)
-                || left <= closeness.phi * slope.abs()
+            let is_close = left <= tolerance.psi * (1.0 + kappa * kappa)
+                || left <= tolerance.phi * slope.abs()
                 || (last.is_some() && step.abs() <= 1e-13 * h.abs());
-            if near && close {
-                return Some(Found {
+            if is_near && is_close {
+                return Some(CurvePoint {
                     h: next,
                     slope,
                     branch,
@@ -235,13 +256,12 @@ impl<B: FixedRadiiAngles> Target<B> {
         None
     }
 
-    /// The h with which a ray meets the radius at `angle`, found from a guess, to the share `close` of itself.
+    /// Returns the h of the ray that meets the radius at `angle`, to the relative error `close`, and dh over the
+    /// residual.
     ///
-    /// Secant steps, kept within the bracket that the residuals' signs have shown so far; bisection, or doubling the
-    /// step where one end is not known yet, wherever the secant leaves it or the residual is infinite.
-    ///
-    /// With it comes its slope over the residual.
-    pub(super) fn bracket(&self, angle: f64, guess: f64, close: f64) -> (f64, f64) {
+    /// Secant steps are kept within the bracket that the residuals' signs have shown so far. Where the secant leaves it
+    /// or the residual is infinite, the bracket is halved, or the stride grows while one end is unknown.
+    fn bracket(&self, angle: f64, guess: f64, close: f64) -> (f64, f64) {
         const STEPS: usize = 200;
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
         let scale = if guess == 0.0 {
@@ -266,10 +286,10 @@ impl<B: FixedRadiiAngles> Target<B> {
             let secant = previous.and_then(|(h0, r0)| {
                 slope = (h - h0) / (residual - r0);
                 let next = h - residual * (h - h0) / (residual - r0);
-                // A last step that changes nothing is an answer, bracket or no bracket.
+                // A step that changes nothing is the answer, within the bracket or not.
                 (next.is_finite() && ((next > low && next < high) || next == h)).then_some(next)
             });
-            // Every eighth step halves the bracket, should the secant creep.
+            // Every eighth step halves the bracket, in case the secant converges slowly.
             let next = match secant {
                 Some(next) if step % 8 != 7 => next,
                 _ if low.is_finite() && high.is_finite() => 0.5 * (low + high),
@@ -285,8 +305,8 @@ impl<B: FixedRadiiAngles> Target<B> {
             let change = (next - h).abs();
             previous = residual.is_finite().then_some((h, residual));
             h = next;
-            // Where the residual bends like a root (a ray that grazes the radius) the secant's error is of the size
-            // of its step.
+            // Where a ray grazes the radius the residual behaves like a square root, and the secant's error is as large
+            // as its step.
             let bracketed = high - low <= 4.0 * f64::EPSILON * h.abs();
             if (secant == Some(next) && change <= close * h.abs()) || bracketed {
                 break;

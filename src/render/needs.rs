@@ -1,78 +1,79 @@
-//! The least that a scene needs: which table, how many orders, how many nodes.
+//! Finds the least that a scene needs: which table, how many orders, how many nodes.
 //!
 //! # Derivation
-//! A scene names one number, [`Scene::tolerance`] T: what an edge may be off by, in pixels. The curves' share of it,
-//! and which orders are thicker than it, is told in [`crate::isoradial`]. The table's share is T/2: an error δφ of its
-//! angles moves an edge by `S δφ` pixels at most, S the [`sensitivity`] of this scene's curves, so that the smallest
-//! table which promises `δφ ≤ T/2S` is enough. S is small where pixels are large (S = 0.4 rad/rad over 4.8e-4 rad a
-//! pixel for `classic` at 1920 × 1080), and of the rings, whose angles all but stand still, smaller by e^{−π} with
-//! each order.
+//! A scene names one number, [`Scene::tolerance`] T: the allowed error of an edge, in pixels. [`crate::isoradial`]
+//! derives the number of orders and nodes from it.
+//!
+//! Half of T is for the table. An error δφ of its angles moves an edge by at most `S δφ` pixels, where S is the
+//! [`sensitivity`] of the scene's curves. So the smallest table that promises `δφ ≤ T/(2S)` is enough. S is small where
+//! pixels are large: for `classic` at 1920 × 1080 an edge moves by 0.4 rad for each radian of φ, and a pixel is
+//! 4.8e-4 rad. The photon rings need less: S falls by `e^{−π}` with each order.
 
-use crate::isoradial::{Sight, sensitivity};
+use crate::isoradial::{CurveSpec, sensitivity};
 use crate::orbit::exact::Exact;
 use crate::scene::{Animation, Scene, SceneError, View};
 use crate::table::Spec;
 
-/// What a scene asks of its curves and of the angles that they are drawn from.
+/// What a scene needs of its curves and of the swept angles behind them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Needs {
-    /// What the curves are drawn for.
-    pub sight: Sight,
-    /// How far an edge moves with the angles, in pixels per radian.
+    /// What the curves are built for.
+    pub curve_spec: CurveSpec,
+    /// How far an edge moves when all angles change, in pixels per radian.
     pub sensitivity: f64,
-    /// The tables that come with the program, coarsest first, and what each may displace an edge by.
+    /// The built-in tables, coarsest first.
     pub tables: Vec<Candidate>,
 }
 
-/// A table that may do for a scene.
+/// A built-in table, and whether it is accurate enough for a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidate {
     /// One of [`Spec::NAMES`].
     pub name: &'static str,
-    /// What it may displace an edge of the scene by, in pixels.
+    /// The most that its error moves an edge, in pixels.
     pub displacement: f64,
-    /// Whether that is within the scene's tolerance.
+    /// Whether that is at most half of the scene's tolerance.
     pub is_enough: bool,
 }
 
 impl Needs {
-    /// What `scene` needs.
+    /// Computes what `scene` needs.
     pub fn new(scene: &Scene, view: &View) -> Self {
-        let sight = Sight::new(scene, view, scene.tolerance());
-        let sensitivity = sensitivity(&sight, &Exact);
+        let spec = CurveSpec::new(scene, view, scene.tolerance());
+        let sensitivity = sensitivity(&spec, &Exact);
         let candidate = |name| {
             let displacement = sensitivity * Spec::named(name)?.tolerance;
             Some(Candidate {
                 name,
                 displacement,
-                is_enough: displacement <= 0.5 * sight.tolerance,
+                is_enough: displacement <= 0.5 * spec.tolerance,
             })
         };
         Self {
-            sight,
+            curve_spec: spec,
             sensitivity,
             tables: Spec::NAMES.into_iter().filter_map(candidate).collect(),
         }
     }
 
-    /// The needs of the frame among some of an animation, evenly apart, that needs most: they depend on the animation alone, and one
-    /// table serves all its frames.
+    /// Computes what an animation needs: the needs of the most sensitive of up to nine evenly spaced frames. They
+    /// depend on the animation alone, so that one table serves all its frames.
     ///
     /// # Errors
-    /// Where none of them can be.
+    /// Returns the error of the first of these frames if none of them can be built.
     pub fn of_animation(animation: &Animation) -> Result<Self, SceneError> {
-        const LOOKED_AT: u64 = 9;
+        const SAMPLED: u64 = 9;
         let last = u64::from(animation.frames());
         let mut most: Option<Self> = None;
         let mut before = 0;
         let mut refused = None;
-        for place in 0..LOOKED_AT {
-            let number = (1 + (last - 1) * place / (LOOKED_AT - 1)) as u32;
+        for place in 0..SAMPLED {
+            let number = (1 + (last - 1) * place / (SAMPLED - 1)) as u32;
             if number == before {
                 continue;
             }
             before = number;
-            // One that cannot be is not this one's to tell.
+            // Skips invalid frames. They are reported where they are drawn.
             let scene = match animation.frame(number) {
                 Ok(scene) => scene,
                 Err(error) => {
@@ -95,7 +96,7 @@ impl Needs {
         most.ok_or(refused.unwrap_or(none))
     }
 
-    /// The smallest table that is enough; none where only exact angles are.
+    /// Returns the smallest table that is enough, or `None` if only exact angles are.
     pub fn table(&self) -> Option<&Candidate> {
         self.tables.iter().find(|candidate| candidate.is_enough)
     }

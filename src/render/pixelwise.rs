@@ -1,4 +1,4 @@
-//! A frame by following every pixel's ray by itself: the same picture from any method, without curves.
+//! Draws a frame without curves, by following every pixel's ray: the same picture from any method.
 
 use core::f64::consts::PI;
 
@@ -10,11 +10,12 @@ use crate::orbit::integrate::FixedStep;
 use crate::orbit::{Event, EventKind, OrbitError, Orbits, Ray};
 use crate::scene::{Disk, Scene, View};
 
-/// The frame's pixels, row by row from the top, on all threads of the current rayon pool. `row_done` is called after
-/// each row.
+/// Returns the frame's pixels, row by row from the top, drawn on all threads of the current rayon pool. Calls
+/// `row_done` after each row.
 ///
 /// # Errors
-/// [`RenderError::Memory`]; [`RenderError::Orbit`] with what the method returns for a ray that it cannot follow.
+/// [`RenderError::Memory`] if the pixels do not fit into memory, [`RenderError::Orbit`] if the method cannot follow a
+/// ray.
 pub fn render(
     scene: &Scene,
     view: &View,
@@ -62,7 +63,7 @@ pub fn render_into(
 /// Whether a pixel (column, row) sees the disk.
 ///
 /// # Errors
-/// What the method returns for a ray that it cannot follow.
+/// Returns the method's error if it cannot follow the ray.
 pub fn sees(
     scene: &Scene,
     view: &View,
@@ -71,7 +72,7 @@ pub fn sees(
 ) -> Result<bool, OrbitError> {
     let pixel = view.pixel(i, j);
     let s = pixel.transverse();
-    // Straight at the hole or away from it: no plane, no disk.
+    // A ray straight at the hole or away from it has no orbit plane, and misses the disk.
     if s <= 0.0 {
         return Ok(false);
     }
@@ -84,8 +85,8 @@ pub fn sees(
     ))
 }
 
-/// Whether a pixel (column, row) sees the disk, by steps that end at each crossing of the disk's plane: see
-/// [`FixedStep::disk_hit`].
+/// Returns whether a pixel (column, row) sees the disk, by steps that end at each crossing of the disk's plane (see
+/// [`FixedStep::disk_hit`]).
 #[inline]
 pub fn sees_in_steps(scene: &Scene, view: &View, method: &FixedStep, (i, j): (u32, u32)) -> bool {
     let pixel = view.pixel(i, j);
@@ -96,8 +97,8 @@ pub fn sees_in_steps(scene: &Scene, view: &View, method: &FixedStep, (i, j): (u3
     })
 }
 
-/// Whether a ray with these events (crossings of the disk's two radii, and the end) is between the two radii at one
-/// of the angles `first + kπ`; at 0 the ray starts in the plane, which is no crossing.
+/// Returns whether a ray is between the disk's two radii at one of the angles `first + kπ`. `events` are its crossings
+/// of the two radii and its end. The angle 0 does not count: a ray that starts in the plane does not cross it there.
 fn meets(events: &[Event], first: f64, disk: &Disk) -> bool {
     let crosses_within = |from: f64, to: f64| {
         let least = if first > 0.0 { 0.0 } else { 1.0 };
@@ -108,8 +109,8 @@ fn meets(events: &[Event], first: f64, disk: &Disk) -> bool {
         (event.kind == EventKind::Inbound && event.radius == disk.outer)
             || (event.kind == EventKind::Outbound && event.radius == disk.inner)
     };
-    // A ray that starts between the radii is one whose first crossing leads out of them. The camera's radius would
-    // not tell, where it is the inner or the outer one: there it depends on where the ray goes.
+    // A ray starts between the radii if its first crossing leads out of them. The camera's radius does not decide this:
+    // where it equals the inner or the outer radius, it depends on the ray's direction.
     let starts_within = events
         .first()
         .is_some_and(|event| !matches!(event.kind, EventKind::End(_)) && !enters(event));

@@ -8,7 +8,7 @@ use super::batch::{self, Curved, DrawnFrame, Sharing};
 use super::error::{RenderError, blank};
 use super::frame::{Threads, Workspace};
 use super::scene_frame::{FrameReport, SceneFrame};
-use crate::isoradial::{Isoradials, Sight};
+use crate::isoradial::{CurveSpec, Isoradials};
 use crate::orbit::path::SweptAngles;
 use crate::scene::{Animation, Scene, View};
 use crate::table::{Lookup, Table};
@@ -87,9 +87,9 @@ impl<A: SweptAngles> Renderer<A> {
     ) -> Result<FrameReport, RenderError> {
         let start = Instant::now();
         let view = View::new(scene);
-        let sight = Sight::new(scene, &view, scene.tolerance());
-        let kept = self.curves.take().filter(|curves| curves.serves(&sight));
-        let curves = kept.unwrap_or_else(|| Isoradials::new(&sight, &self.angles));
+        let spec = CurveSpec::new(scene, &view, scene.tolerance());
+        let kept = self.curves.take().filter(|curves| curves.serves(&spec));
+        let curves = kept.unwrap_or_else(|| Isoradials::new(&spec, &self.angles));
         let curves = self.curves.insert(curves);
         let frame = SceneFrame {
             scene,

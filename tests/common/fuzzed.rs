@@ -13,7 +13,7 @@ use std::sync::OnceLock;
 use crafted::{METADATA_AT, METADATA_LENGTH_AT, sealed};
 use darkness::cli::FrameRange;
 use darkness::cli::rays::RayReader;
-use darkness::isoradial::{Isoradials, Sight};
+use darkness::isoradial::{CurveSpec, Isoradials};
 use darkness::orbit::exact::Exact;
 use darkness::orbit::path::SweptAngles;
 use darkness::orbit::{Event, EventKind, Orbits, Ray};
@@ -86,7 +86,7 @@ const RAYS: [(f64, f64); 8] = [
 /// Both kinds of frames of a scene.
 fn draw(scene: &Scene, angles: &impl SweptAngles) {
     let view = View::new(scene);
-    let curves = Isoradials::new(&Sight::new(scene, &view, scene.tolerance()), angles);
+    let curves = Isoradials::new(&CurveSpec::new(scene, &view, scene.tolerance()), angles);
     let pixels = view.width() as usize * view.height() as usize;
     let hard = mask::render(&view, &curves).unwrap();
     assert!(hard.len() == pixels && hard.iter().all(|&pixel| pixel == 0 || pixel == 255));

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::Mutex;
 
 use darkness::cli::FrameRange;
-use darkness::isoradial::{Isoradials, Sight};
+use darkness::isoradial::{CurveSpec, Isoradials};
 use darkness::orbit::exact::Exact;
 use darkness::render::batch::{self, Curved, DrawnFrame, FrameError, Frames, RayByRay, Sharing};
 use darkness::render::{coverage, mask, pixelwise};
@@ -97,8 +97,8 @@ fn shared_curves_draw_what_a_frames_own_do() {
         for (number, frame) in frames {
             let scene = animation.frame(number).unwrap();
             let view = View::new(&scene);
-            let sight = Sight::new(&scene, &view, scene.tolerance());
-            let own = Isoradials::new(&sight, &Exact);
+            let spec = CurveSpec::new(&scene, &view, scene.tolerance());
+            let own = Isoradials::new(&spec, &Exact);
             // Where an edge passes a pixel's centre as closely as the tolerance, either is right.
             let mask = mask::render(&view, &own).unwrap();
             let others = mask.iter().zip(&frame).filter(|(a, b)| a != b).count();
@@ -123,8 +123,8 @@ fn a_scene_that_does_not_move_is_the_picture() {
     let frame = drawn(&Curved::new(&still, &Exact), "1", 2);
     let scene = Scene::load("classic").unwrap().with_size(160, 90).unwrap();
     let view = View::new(&scene);
-    let sight = Sight::new(&scene, &view, scene.tolerance());
-    let curves = Isoradials::new(&sight, &Exact);
+    let spec = CurveSpec::new(&scene, &view, scene.tolerance());
+    let curves = Isoradials::new(&spec, &Exact);
     assert!(frame[&1] == coverage::render(&view, &curves).unwrap());
     let hard = still.with_antialias(false).unwrap();
     let frame = drawn(&Curved::new(&hard, &Exact), "1", 2);

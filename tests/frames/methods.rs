@@ -2,7 +2,7 @@
 
 use core::f64::consts::PI;
 
-use darkness::isoradial::{Isoradials, Sight};
+use darkness::isoradial::{CurveSpec, Isoradials};
 use darkness::orbit::exact::Exact;
 use darkness::orbit::path::SweptAngles;
 use darkness::orbit::{EventKind, Orbits, Ray};
@@ -12,8 +12,8 @@ use darkness::scene::{Scene, View};
 /// The frame from isoradial curves.
 pub(crate) fn by_curves(scene: &Scene, angles: &impl SweptAngles) -> Vec<u8> {
     let view = View::new(scene);
-    let sight = Sight::new(scene, &view, scene.tolerance());
-    let curves = Isoradials::new(&sight, angles);
+    let spec = CurveSpec::new(scene, &view, scene.tolerance());
+    let curves = Isoradials::new(&spec, angles);
     mask::render(&view, &curves).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -77,8 +77,8 @@ pub(crate) struct SeenByCurves {
 impl SeenByCurves {
     pub(crate) fn new(scene: &Scene, angles: &impl SweptAngles) -> Self {
         let view = View::new(scene);
-        let sight = Sight::new(scene, &view, scene.tolerance());
-        let curves = Isoradials::new(&sight, angles);
+        let spec = CurveSpec::new(scene, &view, scene.tolerance());
+        let curves = Isoradials::new(&spec, angles);
         Self {
             view,
             curves,

@@ -2,7 +2,7 @@
 //! are compared with their exact places over random scenes. Choices for a tolerance eight times as large must fail
 //! somewhere.
 
-use darkness::isoradial::{Edge, Isoradials, Sight, height_at};
+use darkness::isoradial::{CurveSpec, Edge, Isoradials, height_at};
 use darkness::orbit::exact::Exact;
 use darkness::render::needs::Needs;
 use darkness::scene::{Scene, View};
@@ -14,11 +14,11 @@ use proptest::test_runner::TestRunner;
 use crate::tables::table;
 
 /// How far the edges of `curves` are from where they are, at most, in pixels: at places between the nodes of every
-/// quarter turn, where the picture of `sight` shows them.
-fn displacement(sight: &Sight, curves: &Isoradials) -> f64 {
+/// quarter turn, where the picture of `spec` shows them.
+fn displacement(spec: &CurveSpec, curves: &Isoradials) -> f64 {
     /// No number of nodes has a node at many of so many places.
     const PLACES: u32 = 97;
-    let (least, most) = sight.window.cotangent;
+    let (least, most) = spec.window.cotangent;
     let first_angle = |cotangent: f64| core::f64::consts::FRAC_PI_2 - libm::atan(cotangent);
     let (from, to) = (first_angle(most), first_angle(least));
     let mut worst: f64 = 0.0;
@@ -28,9 +28,9 @@ fn displacement(sight: &Sight, curves: &Isoradials) -> f64 {
             let angle = first + f64::from(order.number()) * core::f64::consts::PI;
             for edge in [Edge::Inner, Edge::Outer] {
                 let drawn = curves.height(order.number(), edge, first);
-                let truth = height_at(sight, edge, angle, &Exact);
+                let truth = height_at(spec, edge, angle, &Exact);
                 // A quarter turn that is left out has no edge in the picture.
-                let shown = drawn.map_or(f64::NAN, |drawn| shown(sight, drawn, truth));
+                let shown = drawn.map_or(f64::NAN, |drawn| shown(spec, drawn, truth));
                 worst = worst.max(shown);
             }
         }
@@ -39,31 +39,31 @@ fn displacement(sight: &Sight, curves: &Isoradials) -> f64 {
 }
 
 /// How far two rays are apart in the picture, in pixels: the part of the way that the picture shows.
-fn shown(sight: &Sight, a: f64, b: f64) -> f64 {
-    let (low, high) = sight.window.kappa;
-    let critical = sight.critical();
+fn shown(spec: &CurveSpec, a: f64, b: f64) -> f64 {
+    let (low, high) = spec.window.kappa;
+    let critical = spec.critical();
     let within = |h: f64| h.clamp(low - critical, high - critical);
-    sight.pixels((within(a), within(b)))
+    spec.pixels((within(a), within(b)))
 }
 
 /// The thickness of an order in the picture, exactly, in pixels.
-fn thickness(sight: &Sight, order: u32) -> f64 {
-    let (least, most) = sight.window.cotangent;
+fn thickness(spec: &CurveSpec, order: u32) -> f64 {
+    let (least, most) = spec.window.cotangent;
     let first_angle = |cotangent: f64| core::f64::consts::FRAC_PI_2 - libm::atan(cotangent);
     let (from, to) = (first_angle(most), first_angle(least));
     (0..=32).fold(0.0, |thickest: f64, k| {
         let first = from + (to - from) * f64::from(k) / 32.0;
         let angle = first + f64::from(order) * core::f64::consts::PI;
         let [inner, outer] =
-            [Edge::Inner, Edge::Outer].map(|edge| height_at(sight, edge, angle, &Exact));
-        thickest.max(shown(sight, inner, outer))
+            [Edge::Inner, Edge::Outer].map(|edge| height_at(spec, edge, angle, &Exact));
+        thickest.max(shown(spec, inner, outer))
     })
 }
 
-fn curves_from(sight: &Sight, table_name: Option<&str>) -> Isoradials {
+fn curves_from(spec: &CurveSpec, table_name: Option<&str>) -> Isoradials {
     match table_name {
-        Some(name) => Isoradials::new(sight, &table(name).lookup()),
-        None => Isoradials::new(sight, &Exact),
+        Some(name) => Isoradials::new(spec, &table(name).lookup()),
+        None => Isoradials::new(spec, &Exact),
     }
 }
 
@@ -111,14 +111,14 @@ proptest! {
     #[test]
     fn edges_are_where_they_are_promised(scene in any_scene()) {
         let needs = Needs::new(&scene, &View::new(&scene));
-        let sight = &needs.sight;
-        let curves = curves_from(sight, needs.table().map(|candidate| candidate.name));
+        let spec = &needs.curve_spec;
+        let curves = curves_from(spec, needs.table().map(|candidate| candidate.name));
         let (promised, tolerance) = (curves.error().total(), scene.tolerance());
         prop_assert!(promised <= tolerance, "{promised:e} promised where {tolerance:e} is asked for");
-        let off = displacement(sight, &curves);
+        let off = displacement(spec, &curves);
         prop_assert!(off <= promised, "{off:e} where {promised:e} is promised");
         if let Some(thin) = curves.left_out() {
-            let left_out = thickness(sight, thin.order);
+            let left_out = thickness(spec, thin.order);
             prop_assert!(left_out <= tolerance, "order {} is {left_out:e} pixels thick", thin.order);
         }
     }
@@ -137,14 +137,14 @@ fn scenes(count: usize) -> Vec<Scene> {
 fn nodes_for_eight_times_the_tolerance_are_too_few() {
     let mut broken = 0;
     for scene in scenes(60) {
-        let sight = Needs::new(&scene, &View::new(&scene)).sight;
-        let coarser = Sight {
-            tolerance: 8.0 * sight.tolerance,
-            ..sight
+        let spec = Needs::new(&scene, &View::new(&scene)).curve_spec;
+        let coarser = CurveSpec {
+            tolerance: 8.0 * spec.tolerance,
+            ..spec
         };
         // Exact angles: what is off is the interpolation.
         let curves = Isoradials::new(&coarser, &Exact);
-        broken += usize::from(displacement(&sight, &curves) > sight.tolerance);
+        broken += usize::from(displacement(&spec, &curves) > spec.tolerance);
     }
     println!("broken in {broken} of 60 scenes");
     assert!(broken > 0);
@@ -162,13 +162,13 @@ fn tables_for_eight_times_the_tolerance_are_too_coarse() {
             // Just enough: the displacement is half the tolerance.
             let enough = 2.0 * needs.sensitivity * promised;
             // Finer nodes than anybody needs: what is off is the table.
-            let sight = Sight {
+            let spec = CurveSpec {
                 tolerance: 1e-3 * enough,
-                ..needs.sight
+                ..needs.curve_spec
             };
             if enough > 0.0 {
-                let curves = Isoradials::new(&sight, &table(name).lookup());
-                most = most.max(displacement(&sight, &curves) / (enough / 8.0));
+                let curves = Isoradials::new(&spec, &table(name).lookup());
+                most = most.max(displacement(&spec, &curves) / (enough / 8.0));
             }
         }
         println!("{name}: up to {most} times the tolerance");
@@ -181,15 +181,14 @@ fn tables_for_eight_times_the_tolerance_are_too_coarse() {
 fn orders_for_eight_times_the_tolerance_are_too_few() {
     let mut broken = 0;
     for scene in scenes(60) {
-        let sight = Needs::new(&scene, &View::new(&scene)).sight;
-        let coarser = Sight {
-            tolerance: 8.0 * sight.tolerance,
-            ..sight
+        let spec = Needs::new(&scene, &View::new(&scene)).curve_spec;
+        let coarser = CurveSpec {
+            tolerance: 8.0 * spec.tolerance,
+            ..spec
         };
         let left_out = Isoradials::new(&coarser, &Exact).left_out();
-        broken += usize::from(
-            left_out.is_some_and(|thin| thickness(&sight, thin.order) > sight.tolerance),
-        );
+        broken +=
+            usize::from(left_out.is_some_and(|thin| thickness(&spec, thin.order) > spec.tolerance));
     }
     println!("broken in {broken} of 60 scenes");
     assert!(broken > 0);

@@ -1,7 +1,7 @@
 //! Guards against an outline that puts a pixel on the wrong side of an edge: whole frames against the same frames with
 //! each pixel's own ray, over the built-in and random scenes.
 
-use darkness::isoradial::{Isoradials, Sight};
+use darkness::isoradial::{CurveSpec, Isoradials};
 use darkness::render::mask::{render, render_every_pixel};
 use darkness::scene::{Scene, View, builtins};
 use proptest::prelude::*;
@@ -10,8 +10,8 @@ use crate::tables::table;
 
 fn frames(scene: &Scene) -> (Vec<u8>, Vec<u8>) {
     let view = View::new(scene);
-    let sight = Sight::new(scene, &view, scene.tolerance());
-    let curves = Isoradials::new(&sight, &table("standard").lookup());
+    let spec = CurveSpec::new(scene, &view, scene.tolerance());
+    let curves = Isoradials::new(&spec, &table("standard").lookup());
     (
         render(&view, &curves).unwrap(),
         render_every_pixel(&view, &curves).unwrap(),

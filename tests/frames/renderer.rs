@@ -4,14 +4,14 @@ use std::sync::Mutex;
 
 use darkness::render::{RenderError, coverage, mask};
 use darkness::scene::{Animation, Scene, View};
-use darkness::{Renderer, isoradial::Isoradials, isoradial::Sight};
+use darkness::{Renderer, isoradial::CurveSpec, isoradial::Isoradials};
 
 use crate::tables::table;
 
 fn fresh(scene: &Scene) -> Vec<u8> {
     let view = View::new(scene);
-    let sight = Sight::new(scene, &view, scene.tolerance());
-    let curves = Isoradials::new(&sight, &table("standard").lookup());
+    let spec = CurveSpec::new(scene, &view, scene.tolerance());
+    let curves = Isoradials::new(&spec, &table("standard").lookup());
     if scene.antialias() {
         coverage::render(&view, &curves).unwrap()
     } else {

@@ -10,7 +10,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use darkness::isoradial::{Edge, Isoradials, Sight};
+use darkness::isoradial::{CurveSpec, Edge, Isoradials};
 use darkness::orbit::path::SweptAngles;
 use darkness::scene::{Affine, Scene, View};
 use rayon::prelude::*;
@@ -57,8 +57,8 @@ type Stretch = [End; 2];
 impl Picture {
     pub(crate) fn new(scene: &Scene, angles: &impl SweptAngles) -> Self {
         let view = View::new(scene);
-        let sight = Sight::new(scene, &view, scene.tolerance());
-        let curves = Isoradials::new(&sight, angles);
+        let spec = CurveSpec::new(scene, &view, scene.tolerance());
+        let curves = Isoradials::new(&spec, angles);
         Self { view, curves }
     }
 
@@ -72,7 +72,9 @@ impl Picture {
 
     pub(crate) fn orders(&self) -> Vec<u32> {
         let orders = self.curves.orders().iter();
-        orders.map(darkness::isoradial::Order::number).collect()
+        orders
+            .map(darkness::isoradial::ImageOrder::number)
+            .collect()
     }
 
     /// The share of each pixel that the union of the images of these orders covers: swept.

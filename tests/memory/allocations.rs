@@ -6,7 +6,7 @@ use core::sync::atomic::{AtomicU64, Ordering};
 use std::alloc::System;
 
 use darkness::cli::FrameRange;
-use darkness::isoradial::{Isoradials, Sight};
+use darkness::isoradial::{CurveSpec, Isoradials};
 use darkness::orbit::exact::Exact;
 use darkness::render::batch::{self, Curved, DrawnFrame, Sharing};
 use darkness::render::{coverage, mask};
@@ -47,7 +47,7 @@ pub(crate) fn frames_take_no_memory_once_warm() {
         for name in ["classic", "edge-on", "photon-ring"] {
             let scene = Scene::builtin(name).unwrap().with_size(640, 360).unwrap();
             let view = View::new(&scene);
-            let curves = Isoradials::new(&Sight::new(&scene, &view, scene.tolerance()), &Exact);
+            let curves = Isoradials::new(&CurveSpec::new(&scene, &view, scene.tolerance()), &Exact);
             let mut pixels = vec![0; 640 * 360];
             let mut draw = |frames| {
                 for _ in 0..frames {

@@ -3,7 +3,7 @@
 
 use std::fs;
 
-use darkness::isoradial::{Isoradials, Sight};
+use darkness::isoradial::{CurveSpec, Isoradials};
 use darkness::render::{coverage, mask};
 use darkness::scene::{Scene, View};
 
@@ -29,7 +29,7 @@ pub(crate) fn a_frame_takes_little_more_than_its_bytes() {
     let scene = Scene::builtin("classic").unwrap();
     let (view, mut pixels) = (View::new(&scene), vec![0; 1920 * 1080]);
     let curves = Isoradials::new(
-        &Sight::new(&scene, &view, scene.tolerance()),
+        &CurveSpec::new(&scene, &view, scene.tolerance()),
         &table.lookup(),
     );
     mask::render_into(&view, &curves, &mut pixels, 1920).unwrap();

@@ -3,7 +3,7 @@
 //! integrated equation, and with published figures.
 
 use core::f64::consts::{FRAC_PI_2, PI};
-use darkness::isoradial::{Isoradials, Sight};
+use darkness::isoradial::{CurveSpec, Isoradials};
 use darkness::orbit::exact::Exact;
 use darkness::orbit::integrate::Adaptive;
 use darkness::orbit::invariants::{CRITICAL_E2, Orbit, OrbitPoint};
@@ -667,12 +667,12 @@ fn face_on(argument: &str) -> (f64, u32) {
 }
 
 /// A camera so far away that b = s r to twelve digits, with a pixel of 1e-5 in b.
-fn far_sight() -> Sight {
+fn far_spec() -> CurveSpec {
     let u0: f64 = 1e-12;
-    Sight {
+    CurveSpec {
         pixel: 1e-5 * u0,
         tolerance: 1e-3,
-        ..Sight::all_round(u0, u0 * (1.0 - u0).sqrt(), (3.0, 12.0))
+        ..CurveSpec::all_round(u0, u0 * (1.0 - u0).sqrt(), (3.0, 12.0))
     }
 }
 
@@ -682,18 +682,18 @@ fn far_sight() -> Sight {
 /// hole's direction, where sin ψ = tan ψ = s/z to ψ² = 1e-23.
 #[test]
 fn isoradials_of_a_far_camera_are_at_the_known_impact_parameters() {
-    let sight = far_sight();
+    let spec = far_spec();
     let lookup = table("standard").lookup();
     let rows = known_values("face_on_b");
     assert_eq!(rows.len(), 8);
     for (curves, method) in [
-        (Isoradials::new(&sight, &Exact), "exact"),
-        (Isoradials::new(&sight, &lookup), "table"),
+        (Isoradials::new(&spec, &Exact), "exact"),
+        (Isoradials::new(&spec, &lookup), "table"),
     ] {
         let error = curves.error();
         assert!(error.interpolation <= 1e-3, "{method}: {error:?}");
         assert!(curves.orders().len() >= 4, "{method}");
-        let sees = |b: f64| curves.meets(1.0, b * sight.slope_scale, b * sight.slope_scale, 0.0);
+        let sees = |b: f64| curves.meets(1.0, b * spec.slope_scale, b * spec.slope_scale, 0.0);
         for row in &rows {
             let (radius, order) = face_on(&row.argument);
             let inwards = if radius == 3.0 { 1.0 } else { -1.0 };
@@ -720,7 +720,7 @@ fn rings_thin_out_by_a_factor_of_exp_pi() {
     let [ratio] = &known_values("ring_ratio")[..] else {
         panic!("one row")
     };
-    let curves = Isoradials::new(&far_sight(), &table("standard").lookup());
+    let curves = Isoradials::new(&far_spec(), &table("standard").lookup());
     for (k, distance) in [(3, 1e-3), (4, 1e-3 * ratio.value)] {
         let thickness = |k: usize| curves.orders()[k].thickness();
         let found = thickness(k + 1) / thickness(k);
@@ -747,12 +747,12 @@ fn shadows_are_as_wide_as_synges() {
             .parse()
             .unwrap();
         let u0 = 1.0 / radius;
-        let sight = Sight {
+        let spec = CurveSpec {
             u0,
             slope_scale: u0 * (1.0 - u0).sqrt(),
-            ..far_sight()
+            ..far_spec()
         };
-        let half_angle = libm::atan2(1.0, sight.critical()).to_degrees();
+        let half_angle = libm::atan2(1.0, spec.critical()).to_degrees();
         let half_unit = if row.value < 10.0 { 5e-10 } else { 5e-9 };
         assert!(
             (half_angle - row.value).abs() <= half_unit,

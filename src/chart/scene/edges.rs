@@ -11,7 +11,7 @@
 
 use rayon::prelude::*;
 
-use crate::isoradial::{Edge, Isoradials, Sight, height_at};
+use crate::isoradial::{CurveSpec, Edge, Isoradials, height_at};
 use crate::orbit::exact::Exact;
 use crate::orbit::{EventKind, Fate, Orbits, Ray};
 use crate::scene::{Scene, View};
@@ -35,7 +35,7 @@ pub(super) struct Displacements {
 
 /// The exact positions of the edges.
 pub(super) struct ExactEdges {
-    sight: Sight,
+    spec: CurveSpec,
     /// The disk's inner and outer radius, in Schwarzschild radii.
     radii: (f64, f64),
     samples: Vec<EdgeSample>,
@@ -56,8 +56,8 @@ struct EdgeSample {
 impl ExactEdges {
     /// Finds the edges at `places` angles φ₁.
     pub(super) fn new(scene: &Scene, view: &View, places: u32) -> Self {
-        let sight = Sight::new(scene, view, scene.tolerance());
-        let (low, high) = sight.window.cotangent;
+        let spec = CurveSpec::new(scene, view, scene.tolerance());
+        let (low, high) = spec.window.cotangent;
         let (from, to) = (libm::atan2(1.0, high), libm::atan2(1.0, low));
         let mut samples = Vec::new();
         for order in 0..ORDERS as u32 {
@@ -65,14 +65,14 @@ impl ExactEdges {
                 let first = from + (to - from) * (f64::from(place) + 0.5) / f64::from(places);
                 let angle = f64::from(order) * core::f64::consts::PI + first;
                 let [inner, outer] =
-                    [Edge::Inner, Edge::Outer].map(|edge| height_at(&sight, edge, angle, &Exact));
-                let thickness = sight.pixels((outer, inner));
-                if order >= ALWAYS && thickness < sight.tolerance {
+                    [Edge::Inner, Edge::Outer].map(|edge| height_at(&spec, edge, angle, &Exact));
+                let thickness = spec.pixels((outer, inner));
+                if order >= ALWAYS && thickness < spec.tolerance {
                     continue;
                 }
                 for (edge, height) in [(Edge::Inner, inner), (Edge::Outer, outer)] {
-                    let kappa = sight.critical() + height;
-                    if sight.window.kappa.0 <= kappa && kappa <= sight.window.kappa.1 {
+                    let kappa = spec.critical() + height;
+                    if spec.window.kappa.0 <= kappa && kappa <= spec.window.kappa.1 {
                         samples.push(EdgeSample {
                             order,
                             edge,
@@ -85,7 +85,7 @@ impl ExactEdges {
             }
         }
         Self {
-            sight,
+            spec,
             radii: (scene.disk().inner, scene.disk().outer),
             samples,
         }
@@ -119,7 +119,7 @@ impl ExactEdges {
                 return Some(sample.thickness);
             }
             let height = curves.height(sample.order, sample.edge, sample.first)?;
-            Some(self.sight.pixels((sample.height, height)))
+            Some(self.spec.pixels((sample.height, height)))
         })
     }
 
@@ -127,7 +127,7 @@ impl ExactEdges {
     pub(super) fn of_orbits(&self, orbits: &dyn Orbits) -> Vec<Displacements> {
         self.displacements(|sample| {
             let height = self.flip(orbits, sample)?;
-            let pixels = self.sight.pixels((sample.height, height));
+            let pixels = self.spec.pixels((sample.height, height));
             (pixels <= LOST).then_some(pixels)
         })
     }
@@ -142,9 +142,9 @@ impl ExactEdges {
         let at = |distance: f64| exact + away * distance;
         let mut near = 0.0;
         // One unit in the last place of the ray's slope.
-        let mut far = f64::EPSILON * (self.sight.critical() + exact).abs().max(1e-6);
+        let mut far = f64::EPSILON * (self.spec.critical() + exact).abs().max(1e-6);
         while self.is_inside(orbits, sample, at(far))? == is_inside {
-            if self.sight.pixels((exact, at(far))) > LOST {
+            if self.spec.pixels((exact, at(far))) > LOST {
                 return None;
             }
             near = far;
@@ -164,8 +164,8 @@ impl ExactEdges {
     /// Returns whether the ray at `height` is inside the edge when it meets the disk's plane, or `None` if the method
     /// fails.
     fn is_inside(&self, orbits: &dyn Orbits, sample: &EdgeSample, height: f64) -> Option<bool> {
-        let slope = self.sight.slope_scale * (self.sight.critical() + height);
-        let ray = Ray::new(self.sight.u0, slope).ok()?;
+        let slope = self.spec.slope_scale * (self.spec.critical() + height);
+        let ray = Ray::new(self.spec.u0, slope).ok()?;
         let radius = match sample.edge {
             Edge::Inner => self.radii.0,
             Edge::Outer => self.radii.1,
@@ -211,7 +211,7 @@ mod tests {
         assert!(worst(&adaptive) < 1e-9, "{:e}", worst(&adaptive));
         let rk4 = |h| worst(&of(&FixedStep::new(Scheme::Rk4, h)));
         assert!(rk4(0.2) > 4.0 * rk4(0.1) && rk4(0.1) < 0.01);
-        let curves = Isoradials::new(&edges.sight, &Exact);
+        let curves = Isoradials::new(&edges.spec, &Exact);
         let drawn = worst(&edges.of_curves(&curves));
         assert!(drawn > 0.0 && drawn <= scene.tolerance(), "{drawn:e}");
     }
@@ -222,7 +222,7 @@ mod tests {
         let scene = scene.with_size(64, 36).unwrap();
         let view = View::new(&scene);
         let edges = ExactEdges::new(&scene, &view, 9);
-        let curves = Isoradials::new(&Sight::new(&scene, &view, 1.0), &Exact);
+        let curves = Isoradials::new(&CurveSpec::new(&scene, &view, 1.0), &Exact);
         let left_out = curves.left_out().unwrap();
         let order = &edges.of_curves(&curves)[left_out.order as usize];
         let most = order.pixels.iter().copied().fold(0.0, f64::max);

@@ -2,7 +2,7 @@
 
 use super::super::measurement::{ChartEffort, ComparedMethod};
 use super::super::methods::{Stepper, Tables};
-use crate::isoradial::{Isoradials, Sight};
+use crate::isoradial::{CurveSpec, Isoradials};
 use crate::orbit::exact::Exact;
 use crate::orbit::path::SweptAngles;
 use crate::scene::{Scene, View};
@@ -18,7 +18,7 @@ pub(super) enum FrameMethod<'a> {
     /// From isoradial curves.
     Curves {
         angles: &'a dyn BuildCurves,
-        sight: Sight,
+        spec: CurveSpec,
     },
     /// By stepping along every pixel's ray.
     Steps(Stepper),
@@ -27,12 +27,12 @@ pub(super) enum FrameMethod<'a> {
 /// Swept angles from which curves can be built.
 pub(super) trait BuildCurves: Sync {
     /// Builds the curves.
-    fn build(&self, sight: &Sight) -> Isoradials;
+    fn build(&self, spec: &CurveSpec) -> Isoradials;
 }
 
 impl<T: SweptAngles> BuildCurves for T {
-    fn build(&self, sight: &Sight) -> Isoradials {
-        Isoradials::new(sight, self)
+    fn build(&self, spec: &CurveSpec) -> Isoradials {
+        Isoradials::new(spec, self)
     }
 }
 
@@ -126,7 +126,7 @@ pub(super) fn settings<'a>(
                 method: source.method,
                 renders: FrameMethod::Curves {
                     angles: &*source.angles,
-                    sight: Sight::new(scene, view, tolerance),
+                    spec: CurveSpec::new(scene, view, tolerance),
                 },
                 setting: format!("curve-tolerance={tolerance:e}"),
                 table_bytes: source.table_bytes,

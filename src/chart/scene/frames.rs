@@ -120,7 +120,7 @@ pub(super) fn white(scene: &Scene, view: &View, stepper: &Stepper, pixels: &[(u3
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::isoradial::Sight;
+    use crate::isoradial::CurveSpec;
 
     #[test]
     fn a_right_frame_has_no_wrong_pixel_and_a_coarse_method_has() {
@@ -129,7 +129,7 @@ mod tests {
         let view = View::new(&scene);
         let truth = ExactPixels::new(&scene, &view, 160 * 30).unwrap();
         assert_eq!(truth.pixels(), 160 * 30);
-        let curves = Isoradials::new(&Sight::new(&scene, &view, 1e-3), &Exact);
+        let curves = Isoradials::new(&CurveSpec::new(&scene, &view, 1e-3), &Exact);
         let mut frame = from_curves(&view, &curves).unwrap();
         assert_eq!(truth.wrong_in(&frame, &view), (0, 160 * 30));
         let (row, _) = truth.rows[3];

@@ -212,8 +212,8 @@ fn time(
         .map(|setting| Contender {
             name: &setting.setting,
             run: match &setting.renders {
-                FrameMethod::Curves { angles, sight } => Box::new(move || {
-                    let curves = angles.build(sight);
+                FrameMethod::Curves { angles, spec } => Box::new(move || {
+                    let curves = angles.build(spec);
                     let frame = frames::from_curves(view, &curves).unwrap_or_default();
                     frame.first().copied().map_or(f64::NAN, f64::from)
                 })
@@ -263,8 +263,8 @@ fn point(
     let mut words = setting.setting.clone();
     let mut nodes = None;
     let (displacements, (wrong, compared)) = match &setting.renders {
-        FrameMethod::Curves { angles, sight } => {
-            let curves = angles.build(sight);
+        FrameMethod::Curves { angles, spec } => {
+            let curves = angles.build(spec);
             nodes = Some(curves.nodes());
             words = format!("{words} nodes={} bytes={}", curves.nodes(), curves.bytes());
             if let Some(bytes) = setting.table_bytes {

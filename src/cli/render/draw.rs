@@ -83,7 +83,7 @@ pub(super) fn needs(scene: &Scene) -> Needs {
 /// The curves of a scene that needs `needs`, by a method that draws curves.
 pub(super) fn curves(needs: &Needs, method: &Method) -> Isoradials {
     match method {
-        Method::Table(table) => Isoradials::new(&needs.sight, &table.lookup()),
-        _ => Isoradials::new(&needs.sight, &Exact),
+        Method::Table(table) => Isoradials::new(&needs.curve_spec, &table.lookup()),
+        _ => Isoradials::new(&needs.curve_spec, &Exact),
     }
 }

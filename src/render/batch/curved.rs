@@ -1,11 +1,11 @@
-//! Frames from isoradial curves, which are drawn once for each span of frames.
+//! Frames from isoradial curves, which are built once for each span of frames.
 
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use super::spans::Block;
 use super::{FrameError, Frames, locked};
-use crate::isoradial::{Isoradials, Sight};
+use crate::isoradial::{CurveSpec, Isoradials};
 use crate::orbit::path::SweptAngles;
 use crate::render::FrameReport;
 use crate::render::error::make_room;
@@ -13,17 +13,17 @@ use crate::render::frame::{Threads, Workspace};
 use crate::render::scene_frame::SceneFrame;
 use crate::scene::{Animation, View};
 
-/// Frames whose pixels come from curves, and these from swept angles: of a table, or exact.
+/// Frames from curves, which come from swept angles: exact ones, or those of a table.
 #[derive(Debug)]
 pub struct Curved<'a, A> {
     animation: &'a Animation,
     angles: &'a A,
-    /// The spans last asked for.
+    /// The block of the frame drawn last.
     block: Mutex<Option<Arc<Block>>>,
 }
 
 impl<'a, A: SweptAngles> Curved<'a, A> {
-    /// The frames of `animation`.
+    /// Creates the frames of `animation`.
     pub fn new(animation: &'a Animation, angles: &'a A) -> Self {
         Self {
             animation,
@@ -32,6 +32,7 @@ impl<'a, A: SweptAngles> Curved<'a, A> {
         }
     }
 
+    /// Returns the block that a frame is in.
     fn block(&self, number: u32) -> Arc<Block> {
         let mut kept = locked(&self.block);
         match &*kept {
@@ -60,12 +61,12 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
         let own;
         let curves = match block.span(number) {
             Some(span) if span.is_shared() => {
-                let draw = || Isoradials::new(&span.sight, self.angles);
+                let draw = || Isoradials::new(&span.spec, self.angles);
                 span.curves.get_or_init(draw)
             }
             _ => {
-                let sight = Sight::new(&scene, &view, scene.tolerance());
-                own = Isoradials::new(&sight, self.angles);
+                let spec = CurveSpec::new(&scene, &view, scene.tolerance());
+                own = Isoradials::new(&spec, self.angles);
                 &own
             }
         };

@@ -1,7 +1,8 @@
-//! The frames of an [`Animation`](crate::scene::Animation): many of them side by side, with curves shared where the camera's radius stays.
+//! Draws the frames of an [`Animation`](crate::scene::Animation), many of them side by side. Frames of one camera
+//! radius share their curves.
 //!
-//! A frame's bytes depend on the animation, the table and the frame's number alone: not on which other frames are drawn,
-//! nor on where.
+//! A frame's bytes depend only on the animation, the table and the frame's number. They do not depend on which other
+//! frames are drawn, nor on the thread.
 
 mod curved;
 mod ray_by_ray;
@@ -16,21 +17,20 @@ use crate::scene::SceneError;
 pub use curved::Curved;
 pub use ray_by_ray::RayByRay;
 
-/// How the threads of the current rayon pool share frames out.
+/// How the threads of the current rayon pool divide the frames.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sharing {
-    /// A frame on each thread.
+    /// Each thread draws frames of its own.
     SideBySide,
-    /// One frame after the other, each on all threads.
+    /// All threads draw one frame after the other.
     OneByOne,
 }
 
 impl Sharing {
-    /// As many frames as there are threads, times this, are drawn side by side: the last frames of fewer would leave threads
-    /// without work.
+    /// The fewest frames per thread that are drawn side by side. With fewer, threads would idle during the last frames.
     const MANY: u64 = 4;
 
-    /// What is fastest for `count` frames, of which at most so many can be held at a time.
+    /// Returns the fastest way to draw `count` frames if at most `at_a_time` of them fit into memory together.
     pub fn fastest(count: u64, at_a_time: u64) -> Self {
         let threads = rayon::current_num_threads() as u64;
         if count >= Self::MANY * threads && threads <= at_a_time {
@@ -41,13 +41,13 @@ impl Sharing {
     }
 }
 
-/// What draws any frame of an animation.
+/// Draws any frame of an animation.
 pub trait Frames: Sync {
-    /// Draws frame `number` into `pixels`, row by row from the top, on this thread alone or on all of the current rayon
-    /// pool.
+    /// Draws frame `number` into `pixels`, row by row from the top, on this thread alone or on all threads of the
+    /// current rayon pool.
     ///
     /// # Errors
-    /// [`FrameError`]
+    /// [`FrameError`] if there is no such frame, or if it cannot be drawn.
     fn draw(
         &self,
         number: u32,
@@ -60,32 +60,32 @@ pub trait Frames: Sync {
 /// Why a frame could not be drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum FrameError {
-    /// The scene has no such frame.
+    /// The animation has no such frame, or it is invalid.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The frame itself.
+    /// The frame could not be drawn.
     #[error(transparent)]
     Render(#[from] RenderError),
 }
 
-/// A frame that was drawn, or could not be.
+/// A frame of a batch: drawn, or failed.
 #[derive(Debug)]
 pub struct DrawnFrame<'a> {
     /// Its number in the animation.
     pub number: u32,
-    /// How many frames were begun before it.
+    /// The number of frames that were begun before it.
     pub place: u64,
     /// Its pixels, row by row from the top.
     pub pixels: Result<(&'a [u8], FrameReport), FrameError>,
 }
 
-/// Draws frames on all threads of the current rayon pool. They are begun in order; each is handed to `done` when it
-/// is finished, in any order and from several threads at once. Those that are not `wanted` are passed over.
+/// Draws frames on all threads of the current rayon pool. Frames are begun in order. Each is passed to `done` as soon
+/// as it is finished, so in any order and from several threads at once. Frames that are not `wanted` are skipped.
 ///
-/// The memory is that of a frame, side by side of one for each thread.
+/// It takes the memory of one frame, or of one a thread if they are drawn side by side.
 ///
 /// # Errors
-/// What `done` returns; no more frames are begun then.
+/// Returns the first error of `done`. No more frames are begun after it.
 pub fn draw<E: Send>(
     frames: &impl Frames,
     numbers: impl Iterator<Item = u32> + Send,
@@ -119,7 +119,7 @@ pub fn draw<E: Send>(
         Ok(())
     };
     if side_by_side {
-        // One loop for each thread, on that thread: none is ever run from within another's wait.
+        // Each thread runs one loop. A spawned task could be run from within another frame's wait.
         rayon::broadcast(|_| worker()).into_iter().collect()
     } else {
         worker()

@@ -1,4 +1,4 @@
-//! Frames of which each pixel's ray is followed by itself.
+//! Frames without curves: each pixel's ray is followed by itself.
 
 use std::time::Instant;
 
@@ -8,7 +8,7 @@ use crate::render::frame::Workspace;
 use crate::render::{FrameReport, pixelwise};
 use crate::scene::{Animation, View};
 
-/// Frames whose pixels are what their centres' rays meet, by some method.
+/// Frames whose pixels show what the rays of their centres meet, by some method.
 pub struct RayByRay<'a, O> {
     animation: &'a Animation,
     orbits: &'a O,
@@ -16,7 +16,7 @@ pub struct RayByRay<'a, O> {
 }
 
 impl<'a, O: Orbits> RayByRay<'a, O> {
-    /// The frames of `animation`. `row_done` is called after each row of each.
+    /// Creates the frames of `animation`. `row_done` is called after each row of each frame.
     pub fn new(animation: &'a Animation, orbits: &'a O, row_done: &'a (dyn Fn() + Sync)) -> Self {
         Self {
             animation,

@@ -1,70 +1,70 @@
-//! Which frames share curves: neighbours of one camera radius.
+//! Finds which frames share curves: neighbours of one camera radius.
 //!
-//! The spans are found within blocks of frames that begin at the same numbers whichever frames are drawn, so that a frame's
-//! curves are the same wherever it is drawn, and a frame among millions is found in the time of one block.
+//! Spans are found within blocks of frames. Blocks begin at fixed frame numbers, whichever frames are drawn. So a frame
+//! always gets the same curves, and finding the span of one frame among millions takes only the time of its block.
 
 use std::sync::OnceLock;
 
-use crate::isoradial::{Isoradials, Sight};
+use crate::isoradial::{CurveSpec, Isoradials};
 use crate::scene::{Animation, View};
 
-/// How many frames are looked at together.
+/// The number of frames in a block.
 const BLOCK: u32 = 256;
 
-/// Curves for one picture are finer than for another where its pixels are smaller. Up to this ratio, sharing them is cheaper than
-/// drawing both.
-const ALIKE: f64 = 2.0;
+/// The greatest ratio of the pixel sizes in a span. Smaller pixels need finer curves. Up to this ratio, sharing the
+/// finer ones is cheaper than building both.
+const MAX_PIXEL_RATIO: f64 = 2.0;
 
-/// The spans of one block.
+/// A block of frames and its spans.
 #[derive(Debug)]
 pub(super) struct Block {
     number: u32,
     spans: Vec<Span>,
 }
 
-/// Frames with the same curves.
+/// Successive frames with the same curves.
 #[derive(Debug)]
 pub(super) struct Span {
     first: u32,
     last: u32,
-    /// What the curves are drawn for: all that these frames show.
-    pub(super) sight: Sight,
-    /// The curves, once a frame has needed them.
+    /// What the curves are built for: the union over the frames.
+    pub(super) spec: CurveSpec,
+    /// The curves, built when a frame first needs them.
     pub(super) curves: OnceLock<Isoradials>,
 }
 
 impl Block {
-    /// The number of the block that a frame is in.
+    /// Returns the number of the block that a frame is in.
     fn of(frame: u32) -> u32 {
         frame.saturating_sub(1) / BLOCK
     }
 
-    /// The block that a frame is in. Frames that cannot be are in no span.
+    /// Finds the spans of the block that a frame is in. Invalid frames are in no span.
     pub(super) fn new(animation: &Animation, frame: u32) -> Self {
         let number = Self::of(frame);
         let first = number * BLOCK + 1;
         let last = first.saturating_add(BLOCK - 1).min(animation.frames());
         let mut spans: Vec<Span> = Vec::new();
-        // The pixel of a span's first frame: to drift from there is no way to become unlike.
+        // The pixel size of the span's first frame. Comparing with it, not with the last frame, bounds a slow zoom too.
         let mut pixel = 0.0;
         for number in first..=last {
             let Ok(scene) = animation.frame(number) else {
                 continue;
             };
-            let sight = Sight::new(&scene, &View::new(&scene), scene.tolerance());
+            let spec = CurveSpec::new(&scene, &View::new(&scene), scene.tolerance());
             if let Some(span) = spans.last_mut()
                 && span.last + 1 == number
-                && (pixel / ALIKE..=pixel * ALIKE).contains(&sight.pixel)
-                && let Some(both) = span.sight.and(&sight)
+                && (pixel / MAX_PIXEL_RATIO..=pixel * MAX_PIXEL_RATIO).contains(&spec.pixel)
+                && let Some(both) = span.spec.union(&spec)
             {
                 span.last = number;
-                span.sight = both;
+                span.spec = both;
             } else {
-                pixel = sight.pixel;
+                pixel = spec.pixel;
                 spans.push(Span {
                     first: number,
                     last: number,
-                    sight,
+                    spec,
                     curves: OnceLock::new(),
                 });
             }
@@ -72,12 +72,12 @@ impl Block {
         Self { number, spans }
     }
 
-    /// Whether a frame is in this block.
+    /// Returns whether a frame is in this block.
     pub(super) fn has(&self, frame: u32) -> bool {
         self.number == Self::of(frame)
     }
 
-    /// The span that a frame is in.
+    /// Returns the span that a frame is in.
     pub(super) fn span(&self, frame: u32) -> Option<&Span> {
         let after = self.spans.partition_point(|span| span.first <= frame);
         let span = self.spans.get(after.checked_sub(1)?)?;
@@ -86,7 +86,7 @@ impl Block {
 }
 
 impl Span {
-    /// Whether it is of more than one frame.
+    /// Returns whether the span has more than one frame.
     pub(super) fn is_shared(&self) -> bool {
         self.first < self.last
     }

@@ -1,0 +1,118 @@
+//! What curves are built for: one camera radius, one disk, the part of the sky in the picture, and its pixels.
+//!
+//! # Pixels
+//! Let p be the height of a pixel in the plane at distance 1 from the camera. At the angle θ from the picture's centre,
+//! a radian in any direction is at most `1/(p cos²θ)` pixels long. Let a be the angle between the centre and the hole,
+//! and c the angle between the centre and the corners. A ray at the angle ψ from the hole's direction has
+//! `θ ≤ min(ψ + a, c)`. So a radian there is at most `1/(p cos² min(ψ + a, c))` pixels long:
+//! [`CurveSpec::pixels_per_radian`].
+
+use super::ray_angles::{angle_between, angle_of};
+use super::ray_bounds::RayBounds;
+use crate::orbit::invariants::{critical_slope, three_u_minus_two};
+use crate::scene::{Scene, View};
+
+/// What curves are built for: one camera radius, one disk, and one picture or several from that radius.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurveSpec {
+    /// The camera's inverse radius.
+    pub u0: f64,
+    /// `u0 √(1 − u0)`, the ratio of du/dφ to κ.
+    pub slope_scale: f64,
+    /// The inverse radius of the disk's inner edge.
+    pub u_inner: f64,
+    /// The inverse radius of the disk's outer edge.
+    pub u_outer: f64,
+    /// The height of a pixel in the plane at distance 1.
+    pub pixel: f64,
+    /// The angle between the picture's centre and the hole's direction, in radians.
+    pub axis: f64,
+    /// The angle between the picture's centre and its corners, in radians.
+    pub corner: f64,
+    /// Bounds of the rays in the picture.
+    pub window: RayBounds,
+    /// The allowed error of an edge, in pixels.
+    pub tolerance: f64,
+}
+
+impl CurveSpec {
+    /// Describes the curves for the picture of `scene`, with edges right to `tolerance` pixels.
+    pub fn new(scene: &Scene, view: &View, tolerance: f64) -> Self {
+        let centre = view.ray_at(0.0, 0.0);
+        let (x, y) = (view.x_at(0.0), view.y_at(0.0));
+        let axis = libm::atan2(centre.transverse(), centre.z);
+        let corner = libm::atan((x * x + y * y).sqrt());
+        Self {
+            tolerance,
+            pixel: (view.y_at(0.0) - view.y_at(1.0)).abs(),
+            axis,
+            corner,
+            window: RayBounds::of_picture(view, axis, corner),
+            ..Self::all_round(
+                view.u0(),
+                view.slope_scale(),
+                (scene.disk().inner, scene.disk().outer),
+            )
+        }
+    }
+
+    /// Describes the curves for all rays of a camera at inverse radius `u0`, where `slope_scale` is `u0 √(1 − u0)`.
+    ///
+    /// A pixel is one radian and the tolerance one pixel. Set [`Self::pixel`] and [`Self::tolerance`] for others.
+    pub fn all_round(u0: f64, slope_scale: f64, (inner, outer): (f64, f64)) -> Self {
+        Self {
+            u0,
+            slope_scale,
+            u_inner: 1.0 / inner,
+            u_outer: 1.0 / outer,
+            pixel: 1.0,
+            axis: 0.0,
+            corner: 0.0,
+            window: RayBounds::ALL,
+            tolerance: 1.0,
+        }
+    }
+
+    /// Describes curves that serve the pictures of both. Returns `None` if the camera radii or the disks differ.
+    pub fn union(&self, other: &Self) -> Option<Self> {
+        let radii = |spec: &Self| (spec.u0, spec.slope_scale, spec.u_inner, spec.u_outer);
+        (radii(self) == radii(other)).then(|| Self {
+            pixel: self.pixel.min(other.pixel),
+            axis: self.axis.max(other.axis),
+            corner: self.corner.max(other.corner),
+            window: self.window.union(&other.window),
+            tolerance: self.tolerance.min(other.tolerance),
+            ..*self
+        })
+    }
+
+    /// Returns κ of the critical ray. It is positive (towards the hole) outside the photon sphere, negative inside.
+    pub fn critical(&self) -> f64 {
+        let size = critical_slope(self.u0) / self.slope_scale;
+        if three_u_minus_two(self.u0) < 0.0 {
+            size
+        } else {
+            -size
+        }
+    }
+
+    /// Returns `1/(p cos² min(psi + a, c))`: the most pixels in a radian, for rays at most `psi` radians from the
+    /// hole's direction. Here p is [`Self::pixel`], a is [`Self::axis`] and c is [`Self::corner`].
+    pub fn pixels_per_radian(&self, psi: f64) -> f64 {
+        let cosine = libm::cos((psi + self.axis).min(self.corner));
+        1.0 / (self.pixel * cosine * cosine)
+    }
+
+    /// Bounds the distance in the picture of two rays of one plane, in pixels, from their `h = κ − κ_c`.
+    pub fn pixels(&self, h: (f64, f64)) -> f64 {
+        let critical = self.critical();
+        let (low, high) = (h.0.min(h.1), h.0.max(h.1));
+        self.pixels_per_radian(angle_of(critical + low)) * angle_between(low, high, critical)
+    }
+
+    /// Returns the least and the greatest `h = κ − κ_c` in the picture.
+    pub(super) fn h_range(&self) -> (f64, f64) {
+        let (low, high) = self.window.kappa;
+        (low - self.critical(), high - self.critical())
+    }
+}
