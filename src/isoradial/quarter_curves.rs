@@ -58,6 +58,10 @@ impl QuarterCurves {
     /// Returns whether a ray with `z − κ_c s = excess` meets the disk at x.
     #[inline]
     pub(super) fn meets(&self, excess: f64, s: f64, x: f64) -> bool {
+        // At x = 0 the ray leaves the plane where the camera is, and meets it again as the next order.
+        if self.pole && x == 0.0 {
+            return false;
+        }
         let scaled = if self.pole { excess * x } else { excess };
         let stencil = self.axis.stencil(x);
         scaled >= s * value(&self.outer, &stencil) && scaled <= s * value(&self.inner, &stencil)

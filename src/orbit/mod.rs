@@ -16,6 +16,8 @@ pub mod invariants;
 pub mod path;
 mod ray;
 
-pub(crate) use elliptic::{RealRoots, turning_u, without_turning_point};
+#[cfg(feature = "chart")]
+pub(crate) use elliptic::turning_u;
+pub(crate) use elliptic::{RealRoots, without_turning_point};
 pub use events::{Event, EventKind, Fate, Orbits, TurningPoint};
 pub use ray::{MIN_U, OrbitError, Ray};

@@ -38,7 +38,7 @@ const MOST_STEPS: i64 = 16;
 #[derive(Debug, Default)]
 pub(super) struct Cells {
     /// Row by row, each as long as `stride`: a row of pixels, and one cell for all that is beyond its right side.
-    cells: Vec<i64>,
+    sums: Vec<i64>,
     /// A bit for each cell that may not be 0, row by row.
     marks: Vec<u64>,
     stride: usize,
@@ -62,10 +62,10 @@ impl Cells {
         let stride = width + 1;
         let words = stride.div_ceil(64);
         if (self.stride, self.words) != (stride, words) {
-            self.cells.clear();
+            self.sums.clear();
             self.marks.clear();
         }
-        self.cells.resize(self.cells.len().max(stride * rows), 0);
+        self.sums.resize(self.sums.len().max(stride * rows), 0);
         self.marks.resize(self.marks.len().max(words * rows), 0);
         (self.stride, self.words, self.width, self.rows) = (stride, words, width, rows);
         self.top = top as i64;
@@ -74,7 +74,7 @@ impl Cells {
     /// Adds a height and an area, of an arc of weight 1.
     #[inline(always)]
     fn add(&mut self, row: usize, column: usize, weight: i32, height: i64, area: i64) {
-        let cell = &mut self.cells[row * self.stride + column];
+        let cell = &mut self.sums[row * self.stride + column];
         *cell += i64::from(weight) * ((height << 32) + area);
         self.marks[row * self.words + column / 64] |= 1 << (column % 64);
     }
@@ -453,7 +453,7 @@ impl Cells {
         mut run: impl FnMut(usize, usize, i64),
         mut pixel: impl FnMut(usize, i64),
     ) {
-        let cells = &mut self.cells[row * self.stride..][..self.stride];
+        let cells = &mut self.sums[row * self.stride..][..self.stride];
         let marks = &mut self.marks[row * self.words..][..self.words];
         let (mut share, mut next) = (left, 0);
         for (i, word) in marks.iter_mut().enumerate() {

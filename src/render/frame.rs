@@ -20,6 +20,10 @@ const SMOOTH: f64 = 1.0 / 512.0;
 /// the arc are asked themselves.
 const HARD: f64 = 1.0 / 200.0;
 
+/// Where rounding moves an edge by more than this, in pixels, each pixel shows what its centre sees, asked by itself:
+/// neither an outline nor a share means anything below.
+const COARSE: f64 = 0.1;
+
 /// Memory for the cells of a band, in bytes: what the nearer caches hold.
 const BAND: usize = 1 << 20;
 
@@ -86,6 +90,10 @@ impl Workspace {
         stride: usize,
     ) -> Result<(), RenderError> {
         let needed = check_buffer(view, pixels, stride)?;
+        if curves.error().rounding > COARSE {
+            super::mask::fill_every_pixel(view, curves, &mut pixels[..needed], stride);
+            return Ok(());
+        }
         let (width, height) = (view.width() as usize, view.height() as usize);
         let projection = Projection::new(view, curves);
         let tolerance = if smooth { SMOOTH } else { HARD };
@@ -232,38 +240,32 @@ fn grey(share: i64) -> u8 {
     ((share * i64::from(WHITE) + ONE / 2) / ONE) as u8
 }
 
-/// The winding number along the picture's left side, without the path's crossings of it: that of one pixel, far from the path,
-/// which is asked what its centre sees, less all that the path adds on the way to it.
+/// The winding number along the picture's left side, without the path's crossings of it: that of one place, far from
+/// the path, which is asked what it sees, less all that the path adds on the way to it.
 fn left(path: &OutlinePath, view: &View, curves: &Isoradials) -> i32 {
-    /// Pixels that are looked at, at most.
+    /// Places that are looked at, at most.
     const MOST: u32 = 24;
     /// As far from the path as is wanted, in pixels.
     const FAR: f64 = 2.0;
-    // Places spread over the picture, the first one in its middle (Roberts 2018: the plastic number's powers).
-    let place = |i: u32, share: f64, size: u32| {
-        let place = (0.5 + f64::from(i) * share).fract();
-        ((place * f64::from(size)) as u32).min(size - 1)
-    };
-    let mut best = (-1.0, (0, 0));
+    // Places spread over the picture, the first one in its middle (Roberts 2018: the plastic number's powers). Pixels'
+    // centres alone would not do: in a picture of one row all of them may lie on an edge.
+    let place =
+        |i: u32, share: f64, size: u32| (0.5 + f64::from(i) * share).fract() * f64::from(size);
+    let mut best = (-1.0, (0.0, 0.0));
     for i in 0..MOST {
-        let pixel = (
+        let place = (
             place(i, 0.754_877_666_246_692_8, view.width()),
             place(i, 0.569_840_290_998_053_3, view.height()),
         );
-        let distance = distance(path, centre(pixel));
+        let distance = distance(path, place);
         if distance > best.0 {
-            best = (distance, pixel);
+            best = (distance, place);
         }
         if distance > FAR {
             break;
         }
     }
-    let centre = centre(best.1);
-    i32::from(super::mask::sees(view, curves, centre)) - winding(path, centre)
-}
-
-fn centre((column, row): (u32, u32)) -> (f64, f64) {
-    (f64::from(column) + 0.5, f64::from(row) + 0.5)
+    i32::from(super::mask::sees(view, curves, best.1)) - winding(path, best.1)
 }
 
 /// How far a place is from the path, about: along rows for steep arcs and along columns for flat ones.

@@ -37,18 +37,20 @@ pub fn render_into(
 /// [`RenderError::Memory`]
 pub fn render_every_pixel(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> {
     let mut pixels = blank(view)?;
-    let width = view.width() as usize;
-    pixels
-        .par_chunks_exact_mut(width)
-        .enumerate()
-        .for_each(|(row, pixels)| {
-            for (column, pixel) in pixels.iter_mut().enumerate() {
-                if sees(view, curves, (column as f64 + 0.5, row as f64 + 0.5)) {
-                    *pixel = WHITE;
-                }
-            }
-        });
+    fill_every_pixel(view, curves, &mut pixels, view.width() as usize);
     Ok(pixels)
+}
+
+/// Fills a buffer that the frame fits, each pixel asked by itself.
+pub(super) fn fill_every_pixel(view: &View, curves: &Isoradials, pixels: &mut [u8], stride: usize) {
+    let width = view.width() as usize;
+    let rows = pixels.par_chunks_mut(stride).enumerate();
+    rows.for_each(|(row, pixels)| {
+        for (column, pixel) in pixels[..width].iter_mut().enumerate() {
+            let sees = sees(view, curves, (column as f64 + 0.5, row as f64 + 0.5));
+            *pixel = if sees { WHITE } else { 0 };
+        }
+    });
 }
 
 /// Whether the disk is seen at a place of the picture, in pixels from its left and its top.

@@ -24,6 +24,13 @@ use crate::isoradial::{Boundary, Sector};
 /// The cosine of the widest wedge that is drawn as one arc: an eighth of a right angle to either side of its middle.
 const WIDEST: f64 = 0.923_879_532_511_286_8;
 
+/// From one end of an arc to the other `x̂ = N/(N + D)` changes by no more than this factor,
+const STEEPEST_SHARE: f64 = 3.0;
+
+/// or by no more than this. Beside the disk's plane it runs through many times that within a narrow wedge, and no
+/// polynomial follows.
+const SMALLEST_SHARE: f64 = 1.0 / 64.0;
+
 /// How often a wedge is halved at most. What is left is as narrow as rounding.
 const DEEPEST: u32 = 60;
 
@@ -233,6 +240,7 @@ impl Pen<'_> {
             .place(track.quadrant, track.boundary, azimuth);
         let arc = if ahead
             && from.azimuth.cosine_to(to.azimuth) >= WIDEST
+            && is_even(track.quadrant, from, to)
             && is_level(&[from.seen[0], middle.seen[0], to.seen[0]])
         {
             EdgeArc::new(from, &middle, to, track.weight, self.tolerance)
@@ -271,10 +279,7 @@ impl Pen<'_> {
         };
         // 1 − cos(Δ/2) = sin²(Δ/2)/(1 + cos(Δ/2)) ≤ (1 − cos Δ)/2.
         let across_off = 0.5 * (1.0 - from.azimuth.cosine_to(to.azimuth)).max(0.0);
-        let direction = |place: &Place| {
-            self.projection
-                .direction(track.quadrant, place.azimuth, place.kappa)
-        };
+        let direction = |place: &Place| track.quadrant.direction(place.azimuth, place.kappa);
         let (from, to) = (direction(from), direction(to));
         self.sides.iter().zip(beyond).any(|(side, beyond)| {
             let radial = (side[0] * from[0]).max(side[0] * to[0]) + side[0].abs() * kappa_off;
@@ -336,9 +341,68 @@ fn azimuths(projection: &Projection<'_>, quarter: usize, sector: &Sector) -> Opt
     (low < high).then(|| [at(near), at(far)])
 }
 
+/// Whether x̂ changes little enough between two places for one arc.
+fn is_even(quadrant: Quadrant, from: &Place, to: &Place) -> bool {
+    let share = |place: &Place| match quadrant.quarter {
+        0 => place.axis,
+        _ => 1.0 - place.axis,
+    };
+    let (from, to) = (share(from), share(to));
+    from.max(to) <= STEEPEST_SHARE * from.min(to) || (from - to).abs() <= SMALLEST_SHARE
+}
+
 /// Whether places are ahead of the camera, and none is much nearer to its plane than another.
 fn is_level(w: &[f64]) -> bool {
     let least = w.iter().copied().fold(f64::INFINITY, f64::min);
     let greatest = w.iter().copied().fold(0.0, f64::max);
     least > 0.0 && greatest <= PERSPECTIVE * least
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::isoradial::{CurveSpec, Isoradials};
+    use crate::orbit::exact::Exact;
+    use crate::scene::{Scene, View, builtins};
+
+    /// On either side of an arc, a little farther from it than it may be off, the disk begins or ends.
+    #[test]
+    fn arcs_are_where_the_disk_ends() {
+        const TOLERANCE: f64 = 1.0 / 512.0;
+        for builtin in builtins() {
+            let scene = Scene::builtin(builtin.name()).unwrap();
+            // Orders as thin as an arc's error have both their edges on one side.
+            let view = View::new(&scene);
+            let curves = Isoradials::new(&CurveSpec::new(&scene, &view, 0.05), &Exact);
+            let projection = Projection::new(&view, &curves);
+            let mut path = OutlinePath::default();
+            path.draw(&projection, TOLERANCE, |boundary| {
+                i32::from(boundary.above.is_some()) - i32::from(boundary.below.is_some())
+            });
+            let sees = |arc: &EdgeArc, u: f64, v: f64| {
+                let place = if arc.steep { (v, u) } else { (u, v) };
+                crate::render::mask::sees(&view, &curves, place)
+            };
+            let (mut places, mut wrong) = (0, 0);
+            // Lines that join the splines of two quarter turns are as short as these are wrong.
+            let arcs = path.arcs.iter().filter(|arc| arc.u.1 - arc.u.0 > 0.05);
+            for arc in arcs {
+                for i in 0..16 {
+                    let u = arc.u.0 + (arc.u.1 - arc.u.0) * (f64::from(i) + 0.5) / 16.0;
+                    let (v, off) = (arc.at(u), 1.2 * TOLERANCE);
+                    let jump = i32::from(sees(arc, u, v + off)) - i32::from(sees(arc, u, v - off));
+                    // Downwards a steep arc has more of the disk on its right, a flat one above.
+                    let expected = if arc.steep { arc.weight } else { -arc.weight };
+                    places += 1;
+                    wrong += i32::from(jump != expected);
+                }
+            }
+            // Where two orders' edges cross there is another edge.
+            assert!(
+                places > 100 && wrong * 500 < places,
+                "{}: {wrong} of {places}",
+                builtin.name()
+            );
+        }
+    }
 }

@@ -83,6 +83,17 @@ pub(super) struct Quadrant {
     pub(super) across: f64,
 }
 
+impl Quadrant {
+    /// `(κ, cos α, sin α)`.
+    pub(super) fn direction(self, azimuth: Azimuth, kappa: f64) -> [f64; 3] {
+        [
+            kappa,
+            self.along * azimuth.sine,
+            self.across * azimuth.cosine,
+        ]
+    }
+}
+
 /// A curve's point in the picture, and how it moves with β.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
@@ -210,7 +221,7 @@ impl<'a> Projection<'a> {
             (kept, slope)
         };
         let kappa = self.curves.critical() + h;
-        let direction = self.direction(quadrant, azimuth, kappa);
+        let direction = quadrant.direction(azimuth, kappa);
         let change = [
             h_slope * turn * azimuth.cosine,
             quadrant.along * azimuth.cosine,
@@ -230,15 +241,6 @@ impl<'a> Projection<'a> {
             dx: (dwx - x * dw) * inverse,
             dy: (dwy - y * dw) * inverse,
         }
-    }
-
-    /// `(κ, cos α, sin α)`.
-    pub(super) fn direction(&self, quadrant: Quadrant, azimuth: Azimuth, kappa: f64) -> [f64; 3] {
-        [
-            kappa,
-            quadrant.along * azimuth.sine,
-            quadrant.across * azimuth.cosine,
-        ]
     }
 
     /// `(w, w x, w y)` of a direction.
