@@ -40,6 +40,8 @@ pub enum Threads {
 #[derive(Debug, Default)]
 pub struct Workspace {
     path: OutlinePath,
+    /// Half of the path while it is drawn.
+    half: OutlinePath,
     /// Of each band, the arcs that pass it.
     arcs_of: Vec<Vec<u32>>,
     /// One for each thread.
@@ -97,7 +99,12 @@ impl Workspace {
         let (width, height) = (view.width() as usize, view.height() as usize);
         let projection = Projection::new(view, curves);
         let tolerance = if smooth { SMOOTH } else { HARD };
-        self.path.draw(&projection, tolerance, covers);
+        let count = match threads {
+            Threads::All => rayon::current_num_threads(),
+            Threads::This => 1,
+        };
+        self.path
+            .draw(&mut self.half, &projection, tolerance, covers, count > 1);
         let rows = (BAND / (size_of::<i64>() * width)).clamp(1, height);
         self.sort(height, rows);
         let frame = Bands {
@@ -117,11 +124,6 @@ impl Workspace {
         let bands = pixels[..needed]
             .chunks_mut(stride.saturating_mul(rows))
             .enumerate();
-        let count = if threads == Threads::All {
-            rayon::current_num_threads()
-        } else {
-            1
-        };
         self.scratch
             .resize_with(self.scratch.len().max(count), Scratch::default);
         if count == 1 {

@@ -76,23 +76,35 @@ struct End {
 impl OutlinePath {
     /// Draws the outline in a view, right to `tolerance` pixels. `weight` tells how much more of what is drawn there is
     /// on the greater κ's side of a boundary than on the other: 1, 0 or −1.
+    ///
+    /// It is drawn in two halves, on two threads of the current rayon pool if `on_all_threads`. `half` is memory for one.
     pub(super) fn draw(
         &mut self,
+        half: &mut Self,
         projection: &Projection<'_>,
         tolerance: f64,
-        weight: impl Fn(&Boundary) -> i32,
+        weight: impl Fn(&Boundary) -> i32 + Sync,
+        on_all_threads: bool,
     ) {
-        self.arcs.clear();
-        self.left_crossings.clear();
-        let mut pen = Pen {
-            projection,
-            sides: projection.sides(),
-            tolerance,
-            path: self,
-        };
-        for across in [1.0, -1.0] {
+        let draw = |path: &mut Self, across| {
+            path.arcs.clear();
+            path.left_crossings.clear();
+            let mut pen = Pen {
+                projection,
+                sides: projection.sides(),
+                tolerance,
+                path,
+            };
             pen.half_turn(across, &weight);
+        };
+        if on_all_threads {
+            rayon::join(|| draw(self, 1.0), || draw(half, -1.0));
+        } else {
+            draw(self, 1.0);
+            draw(half, -1.0);
         }
+        self.arcs.append(&mut half.arcs);
+        self.left_crossings.append(&mut half.left_crossings);
     }
 }
 
@@ -376,9 +388,11 @@ mod tests {
             let curves = Isoradials::new(&CurveSpec::new(&scene, &view, 0.05), &Exact);
             let projection = Projection::new(&view, &curves);
             let mut path = OutlinePath::default();
-            path.draw(&projection, TOLERANCE, |boundary| {
+            let weight = |boundary: &Boundary| {
                 i32::from(boundary.above.is_some()) - i32::from(boundary.below.is_some())
-            });
+            };
+            let half = &mut OutlinePath::default();
+            path.draw(half, &projection, TOLERANCE, weight, false);
             let sees = |arc: &EdgeArc, u: f64, v: f64| {
                 let place = if arc.steep { (v, u) } else { (u, v) };
                 crate::render::mask::sees(&view, &curves, place)
