@@ -23,6 +23,10 @@ use super::quarter_curves::QuarterCurves;
 /// No interval of x is halved that is shorter than this.
 const SHORTEST: f64 = 1e-13;
 
+/// Two curves are compared over no more intervals than this. Curves of a sound table take some dozens; those of a table whose
+/// numbers mean nothing would take all there are.
+const MOST_INTERVALS: u32 = 1 << 12;
+
 /// One curve at which the order in front changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Boundary {
@@ -115,18 +119,25 @@ impl Pair<'_> {
 
     /// Adds where they cross in an interval, at whose ends they differ by `first` and `last`: see the
     /// [module's page](self).
-    fn find(&self, x: (f64, f64), (first, last): (f64, f64), found: &mut Vec<f64>) {
+    fn find(
+        &self,
+        x: (f64, f64),
+        (first, last): (f64, f64),
+        intervals: &mut u32,
+        found: &mut Vec<f64>,
+    ) {
+        *intervals += 1;
         let width = x.1 - x.0;
         let off_chord = 0.125 * self.bend(x) * width * width;
         let crosses = (first < 0.0) != (last < 0.0);
-        let is_short = width <= SHORTEST;
+        let is_short = width <= SHORTEST || *intervals > MOST_INTERVALS;
         if crosses && (is_short || first.abs() + last.abs() > 4.0 * off_chord) {
             found.push(self.root(x, first));
         } else if !is_short && (crosses || first.abs().min(last.abs()) <= off_chord) {
             let middle = 0.5 * (x.0 + x.1);
             let between = self.difference(middle);
-            self.find((x.0, middle), (first, between), found);
-            self.find((middle, x.1), (between, last), found);
+            self.find((x.0, middle), (first, between), intervals, found);
+            self.find((middle, x.1), (between, last), intervals, found);
         }
     }
 
@@ -158,7 +169,12 @@ impl Curves<'_> {
                         curves: [(first, a), (second, b)],
                         scaled: first.has_pole() || second.has_pole(),
                     };
-                    pair.find(x, (pair.difference(x.0), pair.difference(x.1)), &mut found);
+                    pair.find(
+                        x,
+                        (pair.difference(x.0), pair.difference(x.1)),
+                        &mut 0,
+                        &mut found,
+                    );
                 }
             }
         }

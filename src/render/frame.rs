@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::WHITE;
 use super::arc::EdgeArc;
 use super::cells::{Cells, ONE, fixed};
+use super::centre::{fill_every_pixel, sees};
 use super::error::{RenderError, check_buffer};
 use super::path::OutlinePath;
 use super::projection::Projection;
@@ -20,8 +21,8 @@ const SMOOTH: f64 = 1.0 / 512.0;
 /// the arc are asked themselves.
 const HARD: f64 = 1.0 / 200.0;
 
-/// Where rounding moves an edge by more than this, in pixels, each pixel shows what its centre sees, asked by itself:
-/// neither an outline nor a share means anything below.
+/// Where rounding moves an edge by more than this, in pixels, or the outline takes too many arcs, each pixel shows what its
+/// centre sees, asked by itself: neither an outline nor a share means anything below.
 const COARSE: f64 = 0.1;
 
 /// Memory for the cells of a band, in bytes: what the nearer caches hold.
@@ -92,10 +93,6 @@ impl Workspace {
         stride: usize,
     ) -> Result<(), RenderError> {
         let needed = check_buffer(view, pixels, stride)?;
-        if curves.error().rounding > COARSE {
-            super::mask::fill_every_pixel(view, curves, &mut pixels[..needed], stride);
-            return Ok(());
-        }
         let (width, height) = (view.width() as usize, view.height() as usize);
         let projection = Projection::new(view, curves);
         let tolerance = if smooth { SMOOTH } else { HARD };
@@ -105,6 +102,10 @@ impl Workspace {
         };
         self.path
             .draw(&mut self.half, &projection, tolerance, covers, count > 1);
+        if curves.error().rounding > COARSE || !self.path.is_complete() {
+            fill_every_pixel(view, curves, &mut pixels[..needed], stride);
+            return Ok(());
+        }
         let rows = (BAND / (size_of::<i64>() * width)).clamp(1, height);
         self.sort(height, rows);
         let frame = Bands {
@@ -208,7 +209,7 @@ impl Bands<'_> {
         }
         for &(column, row) in &scratch.doubtful {
             let (column, row) = (column as usize, row as usize);
-            let is_white = super::mask::sees(
+            let is_white = sees(
                 self.view,
                 self.curves,
                 (column as f64 + 0.5, (top + row) as f64 + 0.5),
@@ -267,7 +268,7 @@ fn left(path: &OutlinePath, view: &View, curves: &Isoradials) -> i32 {
             break;
         }
     }
-    i32::from(super::mask::sees(view, curves, best.1)) - winding(path, best.1)
+    i32::from(sees(view, curves, best.1)) - winding(path, best.1)
 }
 
 /// How far a place is from the path, about: along rows for steep arcs and along columns for flat ones.

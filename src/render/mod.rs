@@ -13,8 +13,8 @@
 //!
 //! # How a frame is drawn
 //! ```text
-//! curves ──in this view──▶ path ──────────▶ cells ──────────▶ rows of pixels
-//! isoradial/outline.rs     path.rs, arc.rs  cells.rs          frame.rs
+//! curves ──in this view──▶ path ──────────▶ cells ────────────▶ rows of pixels
+//! isoradial/outline.rs     path.rs, arc.rs  cover.rs, cross.rs  frame.rs
 //! ```
 //!
 //! The outline of the disk's image is a closed path of curves. It is projected into the picture as short cubics,
@@ -24,12 +24,15 @@
 //!
 //! # Arcs
 //! `arc.rs` derives how far an arc may be off its edge, `path.rs` which parts of the outline are out of the picture,
-//! `cells.rs` the areas.
+//! `cells.rs` how areas add up.
 
 mod arc;
 pub mod batch;
 mod cells;
+mod centre;
+mod cover;
 pub mod coverage;
+mod cross;
 mod error;
 pub mod frame;
 pub mod mask;

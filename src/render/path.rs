@@ -34,6 +34,10 @@ const SMALLEST_SHARE: f64 = 1.0 / 64.0;
 /// How often a wedge is halved at most. What is left is as narrow as rounding.
 const DEEPEST: u32 = 60;
 
+/// Half an outline is drawn of no more wedges than this. Most take some hundreds. Where the camera stands on the disk's
+/// rim to the last digit the curves are noise, and would take all there are.
+const MOST_WEDGES: u32 = 1 << 16;
+
 /// Arcs are made of places ahead of the camera, none of them so much as this factor closer to its plane than another.
 const PERSPECTIVE: f64 = 8.0;
 
@@ -58,6 +62,8 @@ pub(super) struct LeftCrossing {
 pub(super) struct OutlinePath {
     pub(super) arcs: Vec<EdgeArc>,
     pub(super) left_crossings: Vec<LeftCrossing>,
+    /// How many wedges it took.
+    wedges: u32,
     /// The ends of boundaries at this junction and at the next: azimuths at which the boundaries change.
     junction: Vec<End>,
     next_junction: Vec<End>,
@@ -89,6 +95,7 @@ impl OutlinePath {
         let draw = |path: &mut Self, across| {
             path.arcs.clear();
             path.left_crossings.clear();
+            path.wedges = 0;
             let mut pen = Pen {
                 projection,
                 sides: projection.sides(),
@@ -105,6 +112,12 @@ impl OutlinePath {
         }
         self.arcs.append(&mut half.arcs);
         self.left_crossings.append(&mut half.left_crossings);
+        self.wedges = self.wedges.max(half.wedges);
+    }
+
+    /// Whether all of the outline is drawn.
+    pub(super) fn is_complete(&self) -> bool {
+        self.wedges < MOST_WEDGES
     }
 }
 
@@ -234,6 +247,10 @@ impl Pen<'_> {
 
     /// Draws a boundary between two places on it.
     fn wedge(&mut self, track: BoundaryWalk<'_>, from: &Place, to: &Place, depth: u32) {
+        if self.path.wedges >= MOST_WEDGES {
+            return;
+        }
+        self.path.wedges += 1;
         if self.is_beyond(track, from, to) {
             return;
         }
@@ -395,7 +412,7 @@ mod tests {
             path.draw(half, &projection, TOLERANCE, weight, false);
             let sees = |arc: &EdgeArc, u: f64, v: f64| {
                 let place = if arc.steep { (v, u) } else { (u, v) };
-                crate::render::mask::sees(&view, &curves, place)
+                crate::render::centre::sees(&view, &curves, place)
             };
             let (mut places, mut wrong) = (0, 0);
             // Lines that join the splines of two quarter turns are as short as these are wrong.

@@ -69,3 +69,62 @@ proptest! {
         }
     }
 }
+
+/// A scene's text, from what makes it hard.
+fn text(position: &str, focus: &str, up: &str, fov: &str, disk: &str, size: &str) -> String {
+    format!(
+        "[camera]\nposition = [{position}]\nfocus = [{focus}]\nup = [{up}]\nfov = {fov}\n[disk]\n{disk}\n[image]\n{size}\n"
+    )
+}
+
+/// Guards against rows that are inverted from a place on: where several edges begin beyond the picture's left side, where
+/// they pass one pixel's centre, and where every pixel's centre lies on an edge, in a picture of one row along the disk's
+/// plane.
+#[test]
+fn rows_keep_their_side_of_every_edge() {
+    for text in [
+        text(
+            "24.48935813699975, 46.27946028676325, 7.234710250976937",
+            "2.8150780102783024, -1.3612042197242502, -0.14436863331693495",
+            "0.01918616480680016, 0.14450695752495724, -0.9893177600280337",
+            "1.2440618442160334",
+            "inner = 3.0\nouter = 141.74515726581174",
+            "width = 70\nheight = 72",
+        ),
+        text(
+            "-92.6369736665973, -234.68434534553984, 5.060455971962888",
+            "-0.07706849445611397, 0.03096705766736818, 0.026060974378149915",
+            "0.767692361862926, 0.2, 1.0",
+            "1.4757062891931167",
+            "inner = 3.0\nouter = 9.870364443768901",
+            "width = 92\nheight = 53",
+        ),
+        text(
+            "24.667324332657957, 0.0, 8.665726654606678e-12",
+            "0.0, 0.6270067332209188, 0.0",
+            "0.0, 0.0, 1.0",
+            "0.2685175514854031",
+            "inner = 3.0\nouter = 5.468600319028125",
+            "width = 117\nheight = 1",
+        ),
+    ] {
+        let (filled, single) = frames(&Scene::from_toml(&text).unwrap());
+        assert!(filled == single, "{text}");
+    }
+}
+
+/// Guards against an outline without end: the camera stands on the disk's rim to the last digit, where the curve of the
+/// rim is rounding.
+#[test]
+fn a_camera_on_the_rim_is_drawn_pixel_by_pixel() {
+    let text = text(
+        "30.710711600147206, 153.99060948604247, 2.2467977375584153e-13",
+        "88.43259304855835, 86.54372327842007, -129.51971882691298",
+        "0.45619631929321136, 0.2, 1.0",
+        "140.40338372200674",
+        "inner = 8.456930168537372\nouter = 157.02310535991273",
+        "width = 35\nheight = 75",
+    );
+    let (filled, single) = frames(&Scene::from_toml(&text).unwrap());
+    assert!(filled == single);
+}
