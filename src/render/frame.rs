@@ -43,8 +43,10 @@ pub struct Workspace {
     path: OutlinePath,
     /// Half of the path while it is drawn.
     half: OutlinePath,
-    /// Of each band, the arcs that pass it.
-    arcs_of: Vec<Vec<u32>>,
+    /// The arcs that pass each band, band by band.
+    sorted: Vec<u32>,
+    /// Where each band's arcs begin in that list, and where the last band's end.
+    firsts: Vec<usize>,
     /// One for each thread.
     scratch: Vec<Scratch>,
 }
@@ -67,7 +69,8 @@ struct Bands<'a> {
     /// How near to an arc a pixel's centre is doubtful.
     doubt: f64,
     path: &'a OutlinePath,
-    arcs_of: &'a [Vec<u32>],
+    sorted: &'a [u32],
+    firsts: &'a [usize],
     /// The winding number along the picture's left side, without the path's crossings of it.
     left: i32,
     width: usize,
@@ -114,7 +117,8 @@ impl Workspace {
             smooth,
             doubt: 2.0 * (tolerance + curves.error().rounding) + 2.0 / ONE as f64,
             path: &self.path,
-            arcs_of: &self.arcs_of,
+            sorted: &self.sorted,
+            firsts: &self.firsts,
             left: left(&self.path, view, curves),
             width,
             height,
@@ -143,19 +147,32 @@ impl Workspace {
         Ok(())
     }
 
-    /// Sorts the path's arcs into bands.
+    /// Sorts the path's arcs into bands: counts those of each band, and places them from the last to the first.
     fn sort(&mut self, height: usize, rows: usize) {
-        let bands = height.div_ceil(rows);
-        self.arcs_of
-            .resize_with(self.arcs_of.len().max(bands), Vec::new);
-        for arcs in &mut self.arcs_of {
-            arcs.clear();
-        }
-        for (i, arc) in self.path.arcs.iter().enumerate() {
+        let band = |row: f64| (row.max(0.0) as usize).min(height - 1) / rows;
+        let bands_of = |arc: &EdgeArc| {
             let (first, last) = arc.rows();
-            let band = |row: f64| (row.max(0.0) as usize).min(height - 1) / rows;
-            for arcs in &mut self.arcs_of[band(first)..=band(last + 1.0 / ONE as f64)] {
-                arcs.push(i as u32);
+            band(first)..=band(last + 1.0 / ONE as f64)
+        };
+        let bands = height.div_ceil(rows);
+        self.firsts.clear();
+        self.firsts.resize(bands + 1, 0);
+        for arc in &self.path.arcs {
+            for band in bands_of(arc) {
+                self.firsts[band] += 1;
+            }
+        }
+        let mut end = 0;
+        for first in &mut self.firsts {
+            end += *first;
+            *first = end;
+        }
+        self.sorted.clear();
+        self.sorted.resize(end, 0);
+        for (i, arc) in self.path.arcs.iter().enumerate().rev() {
+            for band in bands_of(arc) {
+                self.firsts[band] -= 1;
+                self.sorted[self.firsts[band]] = i as u32;
             }
         }
     }
@@ -174,7 +191,7 @@ impl Bands<'_> {
         let cells = &mut scratch.cells;
         cells.set(self.width, top, rows);
         scratch.doubtful.clear();
-        for &arc in &self.arcs_of[band] {
+        for &arc in &self.sorted[self.firsts[band]..self.firsts[band + 1]] {
             let arc = &self.path.arcs[arc as usize];
             if self.smooth {
                 cells.cover(arc);

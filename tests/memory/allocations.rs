@@ -9,7 +9,7 @@ use darkness::cli::FrameRange;
 use darkness::isoradial::{CurveSpec, Isoradials};
 use darkness::orbit::exact::Exact;
 use darkness::render::batch::{self, Curved, DrawnFrame, Sharing};
-use darkness::render::{coverage, mask};
+use darkness::render::frame::{Threads, Workspace};
 use darkness::scene::{Animation, Scene, View};
 
 struct Counting;
@@ -49,14 +49,18 @@ pub(crate) fn frames_take_no_memory_once_warm() {
             let view = View::new(&scene);
             let curves = Isoradials::new(&CurveSpec::new(&scene, &view, scene.tolerance()), &Exact);
             let mut pixels = vec![0; 640 * 360];
+            let mut workspace = Workspace::default();
             let mut draw = |frames| {
                 for _ in 0..frames {
-                    mask::render_into(&view, &curves, &mut pixels, 640).unwrap();
-                    coverage::render_into(&view, &curves, &mut pixels, 640).unwrap();
+                    for smooth in [false, true] {
+                        let drawn =
+                            workspace.draw(&view, &curves, smooth, Threads::All, &mut pixels, 640);
+                        drawn.unwrap();
+                    }
                 }
             };
             draw(1);
-            // A thread that had no work so far is warm after its first tile.
+            // A thread that had no work so far is warm after its first band.
             let least = (0..5).map(|_| count(|| draw(50))).min();
             assert_eq!(least, Some(0), "{name}");
         }
