@@ -22,7 +22,7 @@
 
 use super::projection::Place;
 
-/// Steeper than this against its main coordinate no arc is.
+/// The greatest slope of an arc against its main coordinate.
 const STEEPEST: f64 = 2.0;
 
 /// The share of the slope's error that counts: see the [module's page](self).
@@ -31,7 +31,7 @@ const SLOPE_SHARE: f64 = 0.15;
 /// A cubic over one of the picture's coordinates, u: `v = v₀ + d (s₀ + d (c₂ + d c₃))`, `d = u − u₀`. In pixels.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct EdgeArc {
-    /// Whether u is the row coordinate y, and v the column coordinate x; else the other way round.
+    /// Whether u is the row coordinate y and v the column coordinate x. Otherwise u is x and v is y.
     pub(super) steep: bool,
     /// How much more of the disk is to the right of the arc than to its left, where u rises: 1 or −1.
     pub(super) weight: i32,
@@ -47,8 +47,9 @@ pub(super) struct EdgeArc {
 }
 
 impl EdgeArc {
-    /// The arc from one place on an edge to another, if it is right to `tolerance` pixels; `middle` is a place on the
-    /// edge between. `weight` is as in [`EdgeArc::weight`] with the edge walked from `from` to `to`.
+    /// Returns the arc from one place on an edge to another, or none if it may be off by more than `tolerance` pixels.
+    /// `middle` is a place on the edge between the two. `weight` is [`EdgeArc::weight`] for the edge walked from `from` to
+    /// `to`.
     pub(super) fn new(
         from: &Place,
         middle: &Place,
@@ -90,7 +91,7 @@ impl EdgeArc {
         Some(Self::cubic(steep, (u0, u1), (v0, v1), (s0, s1), weight))
     }
 
-    /// The straight arc between two points (x, y).
+    /// Returns the straight arc between two points (x, y), or none if they are one point.
     pub(super) fn straight(from: (f64, f64), to: (f64, f64), weight: i32) -> Option<Self> {
         let (across, down) = (to.0 - from.0, to.1 - from.1);
         let steep = down.abs() >= across.abs();
@@ -106,7 +107,7 @@ impl EdgeArc {
     }
 
     fn cubic(steep: bool, u: (f64, f64), v: (f64, f64), slopes: (f64, f64), weight: i32) -> Self {
-        // Walked the other way an edge has the disk on the other hand.
+        // An edge that is walked the other way has the disk on its other side.
         let (u, v, slopes, weight) = if u.0 <= u.1 {
             (u, v, slopes, weight)
         } else {
@@ -130,14 +131,14 @@ impl EdgeArc {
         }
     }
 
-    /// v at u.
+    /// Returns v at u.
     #[inline]
     pub(super) fn at(&self, u: f64) -> f64 {
         let d = u - self.u.0;
         self.v.0 + d * (self.slope + d * (self.c2 + d * self.c3))
     }
 
-    /// How far the arc may be off its chord over a part of some length: `max|v″| length²/8`.
+    /// Returns how far the arc may be off its chord over a part of some length: `max|v″| length²/8`.
     pub(super) fn off_chord(&self, length: f64) -> f64 {
         let (first, last) = (
             2.0 * self.c2,

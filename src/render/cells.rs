@@ -67,8 +67,9 @@ impl Cells {
         ((self.width as i64) << BITS, (self.rows as i64) << BITS)
     }
 
-    /// Walks a row that begins with the winding number `left`, in 2⁻¹⁶, and empties it. `run` is told each run of pixels
-    /// of one share, `pixel` each pixel by itself: share 0 to [`ONE`].
+    /// Sums a row from the left, where the winding number is `left`, in 2⁻¹⁶, and empties it. Calls `run` for each run of
+    /// pixels that no arc passes, with its first column, the column after its last and its share. Calls `pixel` for each
+    /// other pixel. Shares are 0 to [`ONE`].
     #[inline(always)]
     pub(super) fn walk(
         &mut self,

@@ -6,7 +6,7 @@ use super::WHITE;
 use crate::isoradial::Isoradials;
 use crate::scene::View;
 
-/// Fills a buffer that the frame fits, each pixel asked by itself.
+/// Fills a buffer that the frame fits, evaluating each pixel by itself.
 pub(super) fn fill_every_pixel(view: &View, curves: &Isoradials, pixels: &mut [u8], stride: usize) {
     let width = view.width() as usize;
     let rows = pixels.par_chunks_mut(stride).enumerate();
@@ -18,7 +18,7 @@ pub(super) fn fill_every_pixel(view: &View, curves: &Isoradials, pixels: &mut [u
     });
 }
 
-/// Whether the disk is seen at a place of the picture, in pixels from its left and its top.
+/// Returns whether the disk is seen at a place of the picture, in pixels from its left and its top.
 #[inline]
 pub(super) fn sees(view: &View, curves: &Isoradials, (column, row): (f64, f64)) -> bool {
     let ray = view.ray_at(view.x_at(column), view.y_at(row));

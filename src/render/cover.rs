@@ -33,8 +33,8 @@ impl Cells {
         }
     }
 
-    /// Covers what is below a step on the picture's left side in the step's own row. Returns the first row that is
-    /// covered whole.
+    /// Covers the rows below a crossing of the picture's left side, of which only the crossing's own row is covered in
+    /// part: that part is added. Returns the first row that is covered whole.
     pub(super) fn cover_below(&mut self, y: f64, weight: i32) -> i64 {
         let y = self.down(y);
         let row = y >> BITS;

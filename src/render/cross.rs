@@ -9,7 +9,7 @@ use super::cells::{BITS, Cells, ONE, fixed, nearest};
 use super::cover::CHUNK;
 
 impl Cells {
-    /// Turns on, for all pixels whose centres an arc passes on the left, the disk on its right. Pixels whose centres are
+    /// Turns on the pixels whose centres are to the right of an arc, or off if its weight is −1. Pixels whose centres are
     /// within `doubt` of the arc are added to `doubtful`.
     pub(super) fn cross(&mut self, arc: &EdgeArc, doubt: f64, doubtful: &mut Vec<(u32, u32)>) {
         if arc.steep {
@@ -26,7 +26,7 @@ impl Cells {
         }
     }
 
-    /// The first row whose pixels' centres are below a step on the picture's left side.
+    /// Returns the first row whose pixels' centres are below a crossing of the picture's left side.
     pub(super) fn first_below(&self, y: f64) -> i64 {
         centres_above(self.down(y))
     }

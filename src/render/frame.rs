@@ -1,4 +1,4 @@
-//! A frame from its outline: in bands of rows, each by one thread.
+//! Draws a frame from its outline, in bands of rows. Each band is drawn by one thread.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -14,15 +14,15 @@ use super::projection::Projection;
 use crate::isoradial::{Boundary, Isoradials};
 use crate::scene::View;
 
-/// How far an arc may be off its edge where the shares of pixels are drawn, in pixels.
+/// The largest error of an arc for smooth edges, in pixels.
 const SMOOTH: f64 = 1.0 / 512.0;
 
-/// How far an arc may be off its edge where pixels show what their centres see, in pixels. Centres within twice that of
-/// the arc are asked themselves.
+/// The largest error of an arc for hard edges, in pixels. Pixels whose centres are within twice that of an arc are
+/// evaluated one by one.
 const HARD: f64 = 1.0 / 200.0;
 
-/// Where rounding moves an edge by more than this, in pixels, or the outline takes too many arcs, each pixel shows what its
-/// centre sees, asked by itself: neither an outline nor a share means anything below.
+/// Every pixel is evaluated by itself, with hard edges, if rounding moves an edge by more than this, in pixels, or if the
+/// outline takes too many arcs. An outline has no meaning below the rounding of its curves.
 const COARSE: f64 = 0.1;
 
 /// Memory for the cells of a band, in bytes: what the nearer caches hold.
@@ -37,7 +37,7 @@ pub enum Threads {
     This,
 }
 
-/// The memory that frames are drawn with. Once it has drawn a frame, another one like it takes no more.
+/// The memory that frames are drawn with. It is reused: a frame like the one before allocates nothing.
 #[derive(Debug, Default)]
 pub struct Workspace {
     path: OutlinePath,
@@ -66,7 +66,7 @@ struct Bands<'a> {
     view: &'a View,
     curves: &'a Isoradials,
     smooth: bool,
-    /// How near to an arc a pixel's centre is doubtful.
+    /// The distance from an arc within which a pixel's centre is doubtful.
     doubt: f64,
     path: &'a OutlinePath,
     sorted: &'a [u32],
@@ -125,7 +125,6 @@ impl Workspace {
             rows,
             stride,
         };
-        // No wrap: `needed` fits, and so does what is rounded down to rows.
         let bands = pixels[..needed]
             .chunks_mut(stride.saturating_mul(rows))
             .enumerate();
@@ -136,7 +135,7 @@ impl Workspace {
             bands.for_each(|(band, pixels)| frame.draw(band, pixels, scratch));
         } else {
             let bands = Mutex::new(bands);
-            // A thread that panicked left the iterator whole.
+            // The iterator is whole even if a thread panicked while it held the lock.
             let next = || bands.lock().unwrap_or_else(PoisonError::into_inner).next();
             self.scratch[..count].par_iter_mut().for_each(|scratch| {
                 while let Some((band, pixels)) = next() {
@@ -260,12 +259,14 @@ fn grey(share: i64) -> u8 {
     ((share * i64::from(WHITE) + ONE / 2) / ONE) as u8
 }
 
-/// The winding number along the picture's left side, without the path's crossings of it: that of one place, far from
-/// the path, which is asked what it sees, less all that the path adds on the way to it.
+/// Returns the winding number along the picture's left side, without the path's crossings of it.
+///
+/// It follows from one place far from the path: from whether the disk is seen there, and from what the path adds on the way
+/// there from the left side.
 fn left(path: &OutlinePath, view: &View, curves: &Isoradials) -> i32 {
-    /// Places that are looked at, at most.
+    /// The most places that are tried.
     const MOST: u32 = 24;
-    /// As far from the path as is wanted, in pixels.
+    /// A place this far from the path is far enough, in pixels.
     const FAR: f64 = 2.0;
     // Places spread over the picture, the first one in its middle (Roberts 2018: the plastic number's powers). Pixels'
     // centres alone would not do: in a picture of one row all of them may lie on an edge.
@@ -288,7 +289,7 @@ fn left(path: &OutlinePath, view: &View, curves: &Isoradials) -> i32 {
     i32::from(sees(view, curves, best.1)) - winding(path, best.1)
 }
 
-/// How far a place is from the path, about: along rows for steep arcs and along columns for flat ones.
+/// Returns about how far a place is from the path: along rows for steep arcs, along columns for flat ones.
 fn distance(path: &OutlinePath, (x, y): (f64, f64)) -> f64 {
     path.arcs.iter().fold(f64::INFINITY, |least, arc| {
         let (u, v) = if arc.steep { (y, x) } else { (x, y) };
@@ -297,7 +298,7 @@ fn distance(path: &OutlinePath, (x, y): (f64, f64)) -> f64 {
     })
 }
 
-/// How much the path adds to the winding number along the picture's left side down to a place, and right to it.
+/// Returns what the path adds to the winding number on the way down the picture's left side and then right to a place.
 fn winding(path: &OutlinePath, (x, y): (f64, f64)) -> i32 {
     let is_below = |place: f64| i32::from(fixed(place) > fixed(y));
     let from_left = path

@@ -30,7 +30,7 @@ pub fn render_into(
     Workspace::default().draw(view, curves, false, Threads::All, pixels, stride)
 }
 
-/// Returns the same pixels, each asked by itself: without the outline.
+/// Returns the same pixels, evaluated one by one, without the outline: the truth that [`render`] is tested against.
 ///
 /// # Errors
 /// [`RenderError::Memory`]

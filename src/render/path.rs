@@ -5,9 +5,9 @@
 //! on either side of the line from the hole along â. Where the boundaries change, radial lines lead from one to the
 //! next, so that the path is closed. Then the disk is where the path winds around once.
 //!
-//! Nothing is closed off the picture. A part that is beyond one of the picture's sides is left out, and the path may
-//! begin and end anywhere out there. What that changes is how the disk lies along the picture's left side:
-//! an arc's end that is left of it stands in for all that was left out, as a [`LeftCrossing`].
+//! Parts beyond one of the picture's sides are left out, so the path may begin and end anywhere out there. Only the left
+//! side needs care, because sums run along the rows from there. An arc that begins or ends beyond the left side leaves a
+//! [`LeftCrossing`], which stands for the parts that were left out.
 //!
 //! # What is beyond a side
 //! Of each side there is a linear form of `(κ, cos α, sin α)` that is negative beyond it, whether ahead of the camera or
@@ -31,17 +31,17 @@ const STEEPEST_SHARE: f64 = 3.0;
 /// polynomial follows.
 const SMALLEST_SHARE: f64 = 1.0 / 64.0;
 
-/// How often a wedge is halved at most. What is left is as narrow as rounding.
+/// The most halvings of a wedge. What remains is as narrow as rounding.
 const DEEPEST: u32 = 60;
 
 /// Half an outline is drawn of no more wedges than this. Most take some hundreds. Where the camera stands on the disk's
 /// rim to the last digit the curves are noise, and would take all there are.
 const MOST_WEDGES: u32 = 1 << 16;
 
-/// Arcs are made of places ahead of the camera, none of them so much as this factor closer to its plane than another.
+/// The places of an arc are ahead of the camera. Their distances from its plane differ by this factor at most.
 const PERSPECTIVE: f64 = 8.0;
 
-/// Shorter than this, in pixels, a part of an edge is a straight line.
+/// A part of an edge that is shorter than this, in pixels, is drawn as a straight line.
 const SHORT: f64 = 1.0 / 1024.0;
 
 /// Ends of arcs this near to the picture's left side, in pixels, count as beyond it: the path may end on the side
@@ -115,7 +115,7 @@ impl OutlinePath {
         self.wedges = self.wedges.max(half.wedges);
     }
 
-    /// Whether all of the outline is drawn.
+    /// Returns whether the whole outline is drawn.
     pub(super) fn is_complete(&self) -> bool {
         self.wedges < MOST_WEDGES
     }
@@ -187,8 +187,8 @@ impl Pen<'_> {
 
     /// Joins the ends at a junction by radial lines.
     ///
-    /// An arc of weight w from A to B leaves −w at A and w at B. Lines from each end to the next by κ, each with the sum
-    /// of the weights so far, leave nothing anywhere.
+    /// An arc of weight w from A to B leaves −w at A and w at B. A closed path leaves nothing anywhere. So the ends are
+    /// sorted by κ, and a line leads from each to the next, with the sum of the weights so far.
     fn join(&mut self) {
         self.path
             .junction
@@ -327,7 +327,7 @@ impl Pen<'_> {
         }
         self.path.arcs.push(*arc);
         let [first, last] = arc.ends();
-        // The path comes up along the left side to an arc that begins beyond it, and goes down where one ends there.
+        // The path comes up along the left side to an arc that begins beyond it. It goes down the side where one ends.
         for ((x, y), weight) in [(first, -arc.weight), (last, arc.weight)] {
             if x <= AT_LEFT {
                 self.path.left_crossings.push(LeftCrossing { y, weight });
@@ -336,7 +336,7 @@ impl Pen<'_> {
     }
 }
 
-/// The azimuths of a sector that the view has, the one nearer to the border first. None if it has none.
+/// Returns the part of a sector that the view shows, the azimuth nearer to the border first; none if it shows nothing.
 fn azimuths(projection: &Projection<'_>, quarter: usize, sector: &Sector) -> Option<[Azimuth; 2]> {
     let (least, greatest) = projection.reach(quarter);
     let (low, high) = (sector.x.0.max(least), sector.x.1.min(greatest));

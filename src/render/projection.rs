@@ -160,8 +160,8 @@ impl<'a> Projection<'a> {
         })
     }
 
-    /// Whether a boundary is no more than the camera itself: in the disk's plane the direct image's φ is 0 over the first
-    /// quarter turn.
+    /// Returns whether a boundary is at the camera itself. In the disk's plane φ is 0 for the direct image over the first
+    /// quarter turn: these rays meet the plane where they start.
     pub(super) fn is_at_the_camera(&self, quadrant: Quadrant, boundary: &Boundary) -> bool {
         self.n == 0.0 && self.curves.quarter(quadrant.quarter)[boundary.piece].has_pole()
     }
@@ -262,7 +262,8 @@ impl<'a> Projection<'a> {
         if turn > 0.0 { -1 } else { 1 }
     }
 
-    /// Of each side of the picture, a form of `(κ, cos α, sin α)` that is negative beyond it, behind the camera included.
+    /// Returns, for each side of the picture, a linear form of `(κ, cos α, sin α)` that is negative beyond it, ahead of the
+    /// camera and behind it.
     pub(super) fn sides(&self) -> [[f64; 3]; 4] {
         let [w, x, y] = self.matrix;
         [
