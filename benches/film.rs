@@ -1,5 +1,5 @@
-//! The program itself, start-up included: 240 frames of `orbit`, 1920 × 1080, as bare bytes, as a film and as PNG files,
-//! against the least that such bytes cost.
+//! The program itself, start-up included: 240 frames of `orbit`, 1920 × 1080, as bare bytes, as a film and as PNG
+//! files, against the least that such bytes cost.
 //!
 //! `cargo bench --bench film`
 

@@ -8,9 +8,9 @@
 //! * These points and the nodes give a spline on half the cells. It is 16 times as accurate, so it serves as the truth
 //!   in the quarters of the cells.
 //!
-//! The nodes are doubled until the largest difference, in pixels, is small enough. In 10,000 random scenes the error was
-//! nowhere more than 1.1 times that difference, on the fewest nodes once 1.8 times. [`BETWEEN`] and [`BETWEEN_FEWEST`]
-//! times are promised.
+//! The nodes are doubled until the largest difference, in pixels, is small enough. In 10,000 random scenes the error
+//! was nowhere more than 1.1 times that difference, on the fewest nodes once 1.8 times. [`BETWEEN`] and
+//! [`BETWEEN_FEWEST`] times are promised.
 //!
 //! The spline also provides the guess of the true curve in the middle of a cell, with its slope. Mostly one swept angle
 //! is then enough to solve for the point (see `solve.rs`), because the point need not be closer than [`NODE_SHARE`]

@@ -8,10 +8,10 @@
 //! curves, not to the view: all frames of one camera radius share them.
 //!
 //! # Where curves cross
-//! Curves of one order never cross: the inner edge has the greater κ everywhere. Curves of two orders may. Both are splines
-//! g(x) of h; if one of them has a pole, both are taken as `x h`. Over an interval of length δ a function differs from its
-//! chord by no more than `ε = max|g″| δ²/8`, and its slope from the chord's by no more than `max|g″| δ/2 = 4ε/δ`. With d the
-//! difference of the two functions, and ε the sum of both bounds:
+//! Curves of one order never cross: the inner edge has the greater κ everywhere. Curves of two orders may. Both are
+//! splines g(x) of h; if one of them has a pole, both are taken as `x h`. Over an interval of length δ a function
+//! differs from its chord by no more than `ε = max|g″| δ²/8`, and its slope from the chord's by no more than
+//! `max|g″| δ/2 = 4ε/δ`. With d the difference of the two functions, and ε the sum of both bounds:
 //!
 //! * the same sign at both ends and `min |d| > ε`: they do not cross, and touch nowhere;
 //! * opposite signs and `|d₀| + |d₁| > 4ε`: d is monotone, and they cross once;
@@ -24,8 +24,8 @@ use super::quarter_curves::QuarterCurves;
 /// No interval of x is halved that is shorter than this.
 const SHORTEST: f64 = 1e-13;
 
-/// The most intervals over which two curves are compared. A sound table's curves take some dozens. Curves from a table whose
-/// numbers mean nothing would take millions.
+/// The most intervals over which two curves are compared. A sound table's curves take some dozens. Curves from a table
+/// whose numbers mean nothing would take millions.
 const MOST_INTERVALS: u32 = 1 << 12;
 
 /// One curve at which the order in front changes.

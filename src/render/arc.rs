@@ -15,10 +15,10 @@
 //!
 //! So the cubic is off by no more than `α/16` and `8 · 0.0179 = 0.143` times L times the error of the slope.
 //!
-//! The edge is analytic, and a part turns by a quarter of a right angle at most, so that its sixth derivative is small. The
-//! splines that stand for it are right to a fraction of the tolerance, but their third derivative jumps from node to node.
-//! So the bound is no proof: of 670,000 arcs of random scenes the greatest error was 1.13 times the tolerance, and frames
-//! with hard edges ask each pixel that is within twice the tolerance.
+//! The edge is analytic, and a part turns by a quarter of a right angle at most, so that its sixth derivative is small.
+//! The splines that stand for it are right to a fraction of the tolerance, but their third derivative jumps from node
+//! to node. So the bound is no proof: of 670,000 arcs of random scenes the greatest error was 1.13 times the tolerance,
+//! and frames with hard edges ask each pixel that is within twice the tolerance.
 
 use super::projection::Place;
 
@@ -48,8 +48,8 @@ pub(super) struct EdgeArc {
 
 impl EdgeArc {
     /// Returns the arc from one place on an edge to another, or none if it may be off by more than `tolerance` pixels.
-    /// `middle` is a place on the edge between the two. `weight` is [`EdgeArc::weight`] for the edge walked from `from` to
-    /// `to`.
+    /// `middle` is a place on the edge between the two. `weight` is [`EdgeArc::weight`] for the edge walked from `from`
+    /// to `to`.
     pub(super) fn new(
         from: &Place,
         middle: &Place,

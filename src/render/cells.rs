@@ -2,15 +2,16 @@
 //!
 //! # Derivation
 //! Let a path wind around the disk, and let it pass a row of pixels. The share of a pixel that the disk covers is the
-//! path's winding number, averaged over the pixel's square. Going right along the row, the winding number changes by the
-//! weight of each arc that is crossed downwards, and by its opposite for one crossed upwards. So a part of an arc that
-//! lies within one pixel and goes down by `dy`, at a share x̄ of the pixel's width in the mean, changes the pixel's
-//! share by `dy (1 − x̄)`, its *area*, and that of all pixels to the right by `dy`, its *height*. A prefix sum along the
-//! row gives the shares. `cover.rs` adds areas for smooth edges, `cross.rs` whole pixels for hard ones.
+//! path's winding number, averaged over the pixel's square. Going right along the row, the winding number changes by
+//! the weight of each arc that is crossed downwards, and by its opposite for one crossed upwards. So a part of an arc
+//! that lies within one pixel and goes down by `dy`, at a share x̄ of the pixel's width in the mean, changes the
+//! pixel's share by `dy (1 − x̄)`, its *area*, and that of all pixels to the right by `dy`, its *height*. A prefix sum
+//! along the row gives the shares. `cover.rs` adds areas for smooth edges, `cross.rs` whole pixels for hard ones.
 //!
 //! # Integers
-//! Coordinates, heights and areas are counted in 2⁻¹⁶ pixels. A cell holds both in one number, the height above the 32nd
-//! bit, the area below it. Sums of integers are the same in any order, and the heights of a closed path cancel to nothing.
+//! Coordinates, heights and areas are counted in 2⁻¹⁶ pixels. A cell holds both in one number, the height above the
+//! 32nd bit, the area below it. Sums of integers are the same in any order, and the heights of a closed path cancel to
+//! nothing.
 
 /// Bits of a coordinate's fraction.
 pub(super) const BITS: u32 = 16;
@@ -67,9 +68,9 @@ impl Cells {
         ((self.width as i64) << BITS, (self.rows as i64) << BITS)
     }
 
-    /// Sums a row from the left, where the winding number is `left`, in 2⁻¹⁶, and empties it. Calls `run` for each run of
-    /// pixels that no arc passes, with its first column, the column after its last and its share. Calls `pixel` for each
-    /// other pixel. Shares are 0 to [`ONE`].
+    /// Sums a row from the left, where the winding number is `left`, in 2⁻¹⁶, and empties it. Calls `run` for each run
+    /// of pixels that no arc passes, with its first column, the column after its last and its share. Calls `pixel` for
+    /// each other pixel. Shares are 0 to [`ONE`].
     #[inline(always)]
     pub(super) fn walk(
         &mut self,

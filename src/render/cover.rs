@@ -1,8 +1,8 @@
 //! Adds the areas that arcs cover to cells, for smooth edges.
 //!
 //! # Steps along an arc
-//! An arc is cut where its main coordinate passes from one pixel to the next, or finer. Between two places the chord takes
-//! its place, off by `|v″|/8n²` pixels at most for n steps a pixel, and by two thirds of that in the mean.
+//! An arc is cut where its main coordinate passes from one pixel to the next, or finer. Between two places the chord
+//! takes its place, off by `|v″|/8n²` pixels at most for n steps a pixel, and by two thirds of that in the mean.
 
 use super::arc::EdgeArc;
 use super::cells::{BITS, Cells, ONE, fixed, nearest};

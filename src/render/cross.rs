@@ -1,16 +1,16 @@
 //! Turns on the pixels whose centres lie to the right of arcs, for hard edges.
 //!
-//! A pixel's row is that of its centre. A steep arc passes a row's centres at one place, and turns on the pixels from the
-//! first centre to its right. A flat arc passes each column's centres at one place. Between two of them it goes down by
-//! whole rows of centres, and turns these on from there. The parts fit together where arcs do.
+//! A pixel's row is that of its centre. A steep arc passes a row's centres at one place, and turns on the pixels from
+//! the first centre to its right. A flat arc passes each column's centres at one place. Between two of them it goes
+//! down by whole rows of centres, and turns these on from there. The parts fit together where arcs do.
 
 use super::arc::EdgeArc;
 use super::cells::{BITS, Cells, ONE, fixed, nearest};
 use super::cover::CHUNK;
 
 impl Cells {
-    /// Turns on the pixels whose centres are to the right of an arc, or off if its weight is −1. Pixels whose centres are
-    /// within `doubt` of the arc are added to `doubtful`.
+    /// Turns on the pixels whose centres are to the right of an arc, or off if its weight is −1. Pixels whose centres
+    /// are within `doubt` of the arc are added to `doubtful`.
     pub(super) fn cross(&mut self, arc: &EdgeArc, doubt: f64, doubtful: &mut Vec<(u32, u32)>) {
         if arc.steep {
             self.cross_steep(arc, doubt, doubtful);

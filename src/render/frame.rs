@@ -21,8 +21,8 @@ const SMOOTH: f64 = 1.0 / 512.0;
 /// evaluated one by one.
 const HARD: f64 = 1.0 / 200.0;
 
-/// Every pixel is evaluated by itself, with hard edges, if rounding moves an edge by more than this, in pixels, or if the
-/// outline takes too many arcs. An outline has no meaning below the rounding of its curves.
+/// Every pixel is evaluated by itself, with hard edges, if rounding moves an edge by more than this, in pixels, or if
+/// the outline takes too many arcs. An outline has no meaning below the rounding of its curves.
 const COARSE: f64 = 0.1;
 
 /// Memory for the cells of a band, in bytes: what the nearer caches hold.
@@ -261,8 +261,8 @@ fn grey(share: i64) -> u8 {
 
 /// Returns the winding number along the picture's left side, without the path's crossings of it.
 ///
-/// It follows from one place far from the path: from whether the disk is seen there, and from what the path adds on the way
-/// there from the left side.
+/// It follows from one place far from the path: from whether the disk is seen there, and from what the path adds on the
+/// way there from the left side.
 fn left(path: &OutlinePath, view: &View, curves: &Isoradials) -> i32 {
     /// The most places that are tried.
     const MOST: u32 = 24;

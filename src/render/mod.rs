@@ -1,7 +1,7 @@
 //! Frames: which pixels see the disk.
 //!
-//! [`Renderer`] draws a scene in one call. The rest of this module is what it is made of, and the slower methods that it
-//! is tested against:
+//! [`Renderer`] draws a scene in one call. The rest of this module is what it is made of, and the slower methods that
+//! it is tested against:
 //!
 //! | module | what it does |
 //! |---|---|
@@ -18,9 +18,9 @@
 //! ```
 //!
 //! The outline of the disk's image is a closed path of curves. It is projected into the picture as short cubics,
-//! [arcs](self#arcs). For smooth edges each arc adds the area to its right to the pixels that it passes, and a sum along
-//! each row gives every pixel's share of the disk. For hard edges each arc turns on the pixels whose centres lie to its
-//! right; centres that are too near to an arc are asked one by one.
+//! [arcs](self#arcs). For smooth edges each arc adds the area to its right to the pixels that it passes, and a sum
+//! along each row gives every pixel's share of the disk. For hard edges each arc turns on the pixels whose centres lie
+//! to its right; centres that are too near to an arc are asked one by one.
 //!
 //! # Arcs
 //! `arc.rs` derives how far an arc may be off its edge, `path.rs` which parts of the outline are out of the picture,

@@ -5,17 +5,18 @@
 //! on either side of the line from the hole along â. Where the boundaries change, radial lines lead from one to the
 //! next, so that the path is closed. Then the disk is where the path winds around once.
 //!
-//! Parts beyond one of the picture's sides are left out, so the path may begin and end anywhere out there. Only the left
-//! side needs care, because sums run along the rows from there. An arc that begins or ends beyond the left side leaves a
-//! [`LeftCrossing`], which stands for the parts that were left out.
+//! Parts beyond one of the picture's sides are left out, so the path may begin and end anywhere out there. Only the
+//! left side needs care, because sums run along the rows from there. An arc that begins or ends beyond the left side
+//! leaves a [`LeftCrossing`], which stands for the parts that were left out.
 //!
 //! # What is beyond a side
-//! Of each side there is a linear form of `(κ, cos α, sin α)` that is negative beyond it, whether ahead of the camera or
-//! behind. Over a wedge of azimuths between two places, the transverse part `(cos α, sin α)` is at most `1 − cos(Δ/2)`
-//! off its chord, and κ at most `max|h″| δ²/8` off its own over the wedge's x, of length δ; where `f = x h` is
-//! kept, h lies between its ends but for `max|f″| δ²/8` over the lesser x. So the form is at most the sum of its parts'
-//! greatest values at the ends and of their sizes times these. Where that is negative, no ray of the wedge's curve is
-//! in the picture. A wedge of which some part is behind the camera is halved until each half is ahead or beyond a side.
+//! Of each side there is a linear form of `(κ, cos α, sin α)` that is negative beyond it, whether ahead of the camera
+//! or behind. Over a wedge of azimuths between two places, the transverse part `(cos α, sin α)` is at most
+//! `1 − cos(Δ/2)` off its chord, and κ at most `max|h″| δ²/8` off its own over the wedge's x, of length δ; where
+//! `f = x h` is kept, h lies between its ends but for `max|f″| δ²/8` over the lesser x. So the form is at most the sum
+//! of its parts' greatest values at the ends and of their sizes times these. Where that is negative, no ray of the
+//! wedge's curve is in the picture. A wedge of which some part is behind the camera is halved until each half is ahead
+//! or beyond a side.
 
 use super::arc::EdgeArc;
 use super::projection::{Azimuth, Place, Projection, Quadrant};
@@ -83,7 +84,8 @@ impl OutlinePath {
     /// Draws the outline in a view, right to `tolerance` pixels. `weight` tells how much more of what is drawn there is
     /// on the greater κ's side of a boundary than on the other: 1, 0 or −1.
     ///
-    /// It is drawn in two halves, on two threads of the current rayon pool if `on_all_threads`. `half` is memory for one.
+    /// It is drawn in two halves, on two threads of the current rayon pool if `on_all_threads`. `half` is memory for
+    /// one.
     pub(super) fn draw(
         &mut self,
         half: &mut Self,

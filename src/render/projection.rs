@@ -12,9 +12,9 @@
 //! x and y in pixels from the picture's left and top. w > 0 ahead of the camera.
 //!
 //! # The azimuth within a quarter turn
-//! φ₁ = π/2 is met where cos α = 0. Each half turn of α about that border has one quarter turn of φ₁ on either side. The
-//! azimuth is kept as sine and cosine of the angle β from the border: that is exact also where the camera is nearly in
-//! the disk's plane, and all of a quarter turn happens beside the border. With `N = |n·p̂|` and `D = D₁ sin β`,
+//! φ₁ = π/2 is met where cos α = 0. Each half turn of α about that border has one quarter turn of φ₁ on either side.
+//! The azimuth is kept as sine and cosine of the angle β from the border: that is exact also where the camera is nearly
+//! in the disk's plane, and all of a quarter turn happens beside the border. With `N = |n·p̂|` and `D = D₁ sin β`,
 //!
 //! ```text
 //! x̂ = N/(N + D),   dx̂/dβ = −x̂ D₁ cos β/(N + D)
@@ -160,8 +160,8 @@ impl<'a> Projection<'a> {
         })
     }
 
-    /// Returns whether a boundary is at the camera itself. In the disk's plane φ is 0 for the direct image over the first
-    /// quarter turn: these rays meet the plane where they start.
+    /// Returns whether a boundary is at the camera itself. In the disk's plane φ is 0 for the direct image over the
+    /// first quarter turn: these rays meet the plane where they start.
     pub(super) fn is_at_the_camera(&self, quadrant: Quadrant, boundary: &Boundary) -> bool {
         self.n == 0.0 && self.curves.quarter(quadrant.quarter)[boundary.piece].has_pole()
     }
@@ -251,8 +251,8 @@ impl<'a> Projection<'a> {
 
     /// How much more of κ is to the right than to the left of a curve that is walked downwards, as β grows: 1 or −1.
     ///
-    /// With `P = M (κ, cos α, sin α)` the place moves with β and κ so that its rotation from the one to the other is that
-    /// of `det (P, P_β, P_κ) = det M (cos α sin′α − sin α cos′α) = −det M sgn(cos α) sgn(sin α)`.
+    /// With `P = M (κ, cos α, sin α)` the place moves with β and κ so that its rotation from the one to the other is
+    /// that of `det (P, P_β, P_κ) = det M (cos α sin′α − sin α cos′α) = −det M sgn(cos α) sgn(sin α)`.
     pub(super) fn handedness(&self, quadrant: Quadrant) -> i32 {
         let [a, b, c] = self.matrix;
         let minor = |i: usize, j: usize| b[i] * c[j] - b[j] * c[i];
@@ -262,8 +262,8 @@ impl<'a> Projection<'a> {
         if turn > 0.0 { -1 } else { 1 }
     }
 
-    /// Returns, for each side of the picture, a linear form of `(κ, cos α, sin α)` that is negative beyond it, ahead of the
-    /// camera and behind it.
+    /// Returns, for each side of the picture, a linear form of `(κ, cos α, sin α)` that is negative beyond it, ahead of
+    /// the camera and behind it.
     pub(super) fn sides(&self) -> [[f64; 3]; 4] {
         let [w, x, y] = self.matrix;
         [

@@ -15,8 +15,8 @@ use crate::tables::table;
 
 /// What no picture may exceed, in parts of full scale: root mean square, worst pixel, mean.
 ///
-/// An arc is off its edge by 1/512 of a pixel and its chords by 1/256 at most, along up to 1.4 pixels of two edges; half
-/// a grey, 0.002, is rounded. Measured: 0.0007, 0.005, 0.0001.
+/// An arc is off its edge by 1/512 of a pixel and its chords by 1/256 at most, along up to 1.4 pixels of two edges;
+/// half a grey, 0.002, is rounded. Measured: 0.0007, 0.005, 0.0001.
 const MOST: (f64, f64, f64) = (0.001, 0.01, 0.0002);
 
 /// The same against the reference, whose 32 × 32 samples are themselves off by 0.016 at most.

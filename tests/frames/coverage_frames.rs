@@ -1,5 +1,5 @@
-//! Guards against greys that depend on how the frame was drawn: on how many threads, into whose buffer, on which side of
-//! a mirror.
+//! Guards against greys that depend on how the frame was drawn: on how many threads, into whose buffer, on which side
+//! of a mirror.
 
 use darkness::isoradial::Isoradials;
 use darkness::render::{RenderError, coverage, mask};
@@ -25,8 +25,8 @@ fn smooth(picture: &Picture) -> Vec<u8> {
     coverage::render(&picture.view, &picture.curves).unwrap()
 }
 
-/// Guards against light where nothing is seen: through a wide lens all of the disk is half a pixel, seen from within its
-/// plane.
+/// Guards against light where nothing is seen: through a wide lens all of the disk is half a pixel, seen from within
+/// its plane.
 #[test]
 fn a_disk_within_one_pixel_lights_that_pixel_alone() {
     let text = "[camera]\nposition = [99.99999987854646, 0.0, -0.004928560257966286]\n\
@@ -182,8 +182,8 @@ fn is_grey(frame: &[u8]) -> bool {
     frame.iter().any(|value| (1..255).contains(value))
 }
 
-/// Guards against a pixel's sides being treated unlike each other: left and right. The path's ends are rounded to a grid
-/// of 2⁻¹⁴ pixels, which has no mirror image, so that a share may be rounded to the next grey.
+/// Guards against a pixel's sides being treated unlike each other: left and right. The path's ends are rounded to a
+/// grid of 2⁻¹⁴ pixels, which has no mirror image, so that a share may be rounded to the next grey.
 #[test]
 fn left_and_right_are_alike_to_one_grey() {
     let (mut unlike, mut greys) = (0, 0);

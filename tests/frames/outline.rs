@@ -77,9 +77,9 @@ fn text(position: &str, focus: &str, up: &str, fov: &str, disk: &str, size: &str
     )
 }
 
-/// Guards against rows that are inverted from a place on: where several edges begin beyond the picture's left side, where
-/// they pass one pixel's centre, and where every pixel's centre lies on an edge, in a picture of one row along the disk's
-/// plane.
+/// Guards against rows that are inverted from a place on: where several edges begin beyond the picture's left side,
+/// where they pass one pixel's centre, and where every pixel's centre lies on an edge, in a picture of one row along
+/// the disk's plane.
 #[test]
 fn rows_keep_their_side_of_every_edge() {
     for text in [
