@@ -372,10 +372,12 @@ fn a_first_signal_finishes_the_frames_begun_and_a_rerun_the_rest() {
 #[test]
 #[cfg(target_os = "linux")]
 fn a_signal_that_is_ignored_from_the_start_is_ignored() {
-    let folder = with_animation(300);
+    // Enough to be still at work when the signal comes.
+    const FRAMES: u32 = 10_000;
+    let folder = with_animation(FRAMES);
     let here = folder.path();
     let line = format!(
-        "trap '' INT; '{PROGRAM}' render small.toml -o film.raw & sleep 0.05; kill -INT $!; wait $!"
+        "trap '' INT; '{PROGRAM}' render small.toml -o film.raw & sleep 0.05; kill -INT $! || exit 9; wait $!"
     );
     let ended = Command::new("sh")
         .current_dir(here)
@@ -384,6 +386,6 @@ fn a_signal_that_is_ignored_from_the_start_is_ignored() {
     assert_eq!(ended.unwrap().code(), Some(0));
     assert_eq!(
         fs::metadata(here.join("film.raw")).unwrap().len(),
-        300 * 96 * 54
+        u64::from(FRAMES) * 96 * 54
     );
 }

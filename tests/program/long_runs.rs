@@ -107,7 +107,7 @@ fn signal(child: &Child, name: &str) {
 /// Guards against an interrupted system call that is reported as a failure, and against a lock that is lost.
 #[test]
 fn a_run_that_is_paused_and_resumed_does_all_its_work() {
-    let folder = with_animation(3000);
+    let folder = with_animation(1000);
     let here = folder.path();
     done(here, &["render", "small.toml", "-o", "whole.y4m"]);
     done(here, &["render", "small.toml", "-o", "whole/f_####.png"]);
