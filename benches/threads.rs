@@ -1,4 +1,4 @@
-//! One thread and two: a frame's tiles shared out, and a batch's frames.
+//! One thread and two: a frame's bands shared out, and a batch's frames.
 //!
 //! `cargo bench --bench threads`
 

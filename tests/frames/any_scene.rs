@@ -33,7 +33,7 @@ pub(crate) const KINDS: [Kind; 6] = [
 /// Numbers between 0 and 1 that a scene is made from.
 type Numbers = ([f64; 4], [f64; 4], (u32, u32));
 
-/// A scene of a kind; its sides are of some tens of pixels, no tile's.
+/// A scene of a kind, some tens of pixels wide and high.
 pub(crate) fn any_scene() -> impl Strategy<Value = (Kind, Scene)> {
     let unit = || 0.0..1.0_f64;
     let numbers = (
