@@ -48,7 +48,10 @@ proptest! {
         let (x, y, z) = (direction.0, direction.1, direction.2 * flat);
         let length = (x * x + y * y + z * z).sqrt();
         prop_assume!(length > 0.1);
-        let place = |factor: f64| format!("[{:e}, {:e}, {:e}]", factor * x / length, factor * y / length, factor * z / length);
+        let place = |factor: f64| {
+            let share = factor / length;
+            format!("[{:e}, {:e}, {:e}]", share * x, share * y, share * z)
+        };
         let focus = match aimed {
             0 => place(3.0 * r),
             // The photon ring's neighbourhood, through a lens of its own.
@@ -57,7 +60,9 @@ proptest! {
         };
         let outer = 3.0 + libm::exp(width_log * core::f64::consts::LN_10);
         let text = format!(
-            "[camera]\nposition = {}\nfocus = {focus}\nup = [0.1, 0.2, 1.0]\nfov = {}\n[disk]\ninner = 3.0\nouter = {outer}\n[image]\nwidth = 150\nheight = 90\n",
+            "[camera]\nposition = {}\nfocus = {focus}\nup = [0.1, 0.2, 1.0]\nfov = {}\n\
+             [disk]\ninner = 3.0\nouter = {outer}\n\
+             [image]\nwidth = 150\nheight = 90\n",
             place(r),
             libm::exp(fov_log * core::f64::consts::LN_10).min(170.0),
         );

@@ -3,29 +3,11 @@
 use rayon::prelude::*;
 
 use super::super::methods::Stepper;
-use crate::isoradial::Isoradials;
 use crate::orbit::OrbitError;
 use crate::orbit::exact::Exact;
-use crate::render::mask::{self, WHITE};
+use crate::render::mask::WHITE;
 use crate::render::{RenderError, pixelwise};
 use crate::scene::{Scene, View};
-
-/// Renders a frame with hard edges from `curves`, on all threads of the current rayon pool.
-pub(super) fn from_curves(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> {
-    let (width, height) = (view.width(), view.height());
-    let bytes = u64::from(width) * u64::from(height);
-    let memory = || RenderError::Memory {
-        width,
-        height,
-        bytes,
-    };
-    let length = usize::try_from(bytes).map_err(|_| memory())?;
-    let mut pixels = Vec::new();
-    pixels.try_reserve_exact(length).map_err(|_| memory())?;
-    pixels.resize(length, 0);
-    mask::render_into(view, curves, &mut pixels, width as usize)?;
-    Ok(pixels)
-}
 
 /// The exact pixels of some rows.
 pub(super) struct ExactPixels {
@@ -120,7 +102,7 @@ pub(super) fn white(scene: &Scene, view: &View, stepper: &Stepper, pixels: &[(u3
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::isoradial::CurveSpec;
+    use crate::isoradial::{CurveSpec, Isoradials};
 
     #[test]
     fn a_right_frame_has_no_wrong_pixel_and_a_coarse_method_has() {
@@ -130,7 +112,7 @@ mod tests {
         let truth = ExactPixels::new(&scene, &view, 160 * 30).unwrap();
         assert_eq!(truth.pixels(), 160 * 30);
         let curves = Isoradials::new(&CurveSpec::new(&scene, &view, 1e-3), &Exact);
-        let mut frame = from_curves(&view, &curves).unwrap();
+        let mut frame = crate::render::mask::render(&view, &curves).unwrap();
         assert_eq!(truth.wrong_in(&frame, &view), (0, 160 * 30));
         let (row, _) = truth.rows[3];
         frame[row as usize * 160 + 5] ^= WHITE;

@@ -18,6 +18,7 @@ use super::measurement::{
 };
 use super::methods::Tables;
 use super::number_format::{grouped, two_digits};
+use crate::render::mask;
 use crate::scene::{Scene, View};
 use edges::{Displacements, ExactEdges, ORDERS};
 use frame_methods::{FrameMethod, FrameSetting, settings, sources};
@@ -214,7 +215,7 @@ fn time(
             run: match &setting.renders {
                 FrameMethod::Curves { angles, spec } => Box::new(move || {
                     let curves = angles.build(spec);
-                    let frame = frames::from_curves(view, &curves).unwrap_or_default();
+                    let frame = mask::render(view, &curves).unwrap_or_default();
                     frame.first().copied().map_or(f64::NAN, f64::from)
                 })
                     as Box<dyn FnMut() -> f64>,
@@ -270,7 +271,7 @@ fn point(
             if let Some(bytes) = setting.table_bytes {
                 words = format!("{words} table-bytes={bytes}");
             }
-            let frame = frames::from_curves(view, &curves)?;
+            let frame = mask::render(view, &curves)?;
             (edges.of_curves(&curves), truth.wrong_in(&frame, view))
         }
         FrameMethod::Steps(stepper) => (
