@@ -57,6 +57,7 @@ pub mod chart;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod isoradial;
+pub mod light;
 pub mod orbit;
 pub mod output;
 mod quotation;

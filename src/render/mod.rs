@@ -39,11 +39,13 @@ pub mod mask;
 pub mod needs;
 mod path;
 pub mod pixelwise;
+mod planes;
 mod projection;
 mod renderer;
 mod scene_frame;
 
 pub use error::RenderError;
+pub use planes::{Pixels, Plane};
 pub use renderer::Renderer;
 pub use scene_frame::FrameReport;
 

@@ -1,8 +1,9 @@
 //! A scene whose values are checked.
 
 use super::error::SceneError;
+use super::layers::LayerSet;
 use super::validate;
-use super::values::{Camera, DEFAULT_TOLERANCE, Disk, ImageSettings, ImageSize};
+use super::values::{Camera, DEFAULT_TOLERANCE, Disk, ImageSettings, ImageSize, Light, Tone};
 use super::vector::norm;
 
 /// A checked scene: nothing that takes one needs to check it again.
@@ -29,6 +30,7 @@ pub struct Scene {
     camera: Camera,
     radius: f64,
     disk: Disk,
+    light: Option<Light>,
     settings: ImageSettings,
 }
 
@@ -41,7 +43,7 @@ impl Scene {
     pub fn new(camera: Camera, disk: Disk, image: ImageSize) -> Result<Self, SceneError> {
         let (width, height) = (i64::from(image.width), i64::from(image.height));
         let settings = validate::image(width, height, true, DEFAULT_TOLERANCE)?;
-        Self::at_radius(camera, norm(camera.position), disk, settings)
+        Self::at_radius(camera, norm(camera.position), disk, None, settings)
     }
 
     /// The scene of a camera whose position has the length `radius`, up to the rounding of the position's components.
@@ -52,6 +54,7 @@ impl Scene {
         camera: Camera,
         radius: f64,
         disk: Disk,
+        light: Option<Light>,
         settings: ImageSettings,
     ) -> Result<Self, SceneError> {
         validate::scene(&camera, radius, &disk)?;
@@ -59,6 +62,7 @@ impl Scene {
             camera,
             radius,
             disk,
+            light,
             settings,
         })
     }
@@ -89,6 +93,34 @@ impl Scene {
         self
     }
 
+    /// The same scene with a shining disk, or with one that only covers (`None`).
+    #[must_use]
+    pub fn with_light(mut self, light: Option<Light>) -> Self {
+        self.light = light;
+        self
+    }
+
+    /// The same scene with its light multiplied by 2 to the power of `stops`.
+    #[must_use]
+    pub fn with_exposure(mut self, stops: f64) -> Self {
+        self.settings.exposure = stops;
+        self
+    }
+
+    /// The same scene with another tone.
+    #[must_use]
+    pub fn with_tone(mut self, tone: Tone) -> Self {
+        self.settings.tone = tone;
+        self
+    }
+
+    /// The same scene with these layers of data.
+    #[must_use]
+    pub fn with_layers(mut self, layers: LayerSet) -> Self {
+        self.settings.layers = layers;
+        self
+    }
+
     /// The camera.
     pub fn camera(&self) -> &Camera {
         &self.camera
@@ -103,6 +135,31 @@ impl Scene {
     /// The disk.
     pub fn disk(&self) -> &Disk {
         &self.disk
+    }
+
+    /// The light of the disk; `None` where the disk only covers.
+    pub fn light(&self) -> Option<Light> {
+        self.light
+    }
+
+    /// The exposure, in stops: a picture shows light times 2 to this power.
+    pub fn exposure(&self) -> f64 {
+        self.settings.exposure
+    }
+
+    /// How bright light becomes a picture's values.
+    pub fn tone(&self) -> Tone {
+        self.settings.tone
+    }
+
+    /// The bits of a PNG picture's samples, 8 or 16.
+    pub fn bits(&self) -> u8 {
+        self.settings.bits
+    }
+
+    /// The layers of data that the scene names.
+    pub fn layers(&self) -> LayerSet {
+        self.settings.layers
     }
 
     /// The picture's size.

@@ -31,6 +31,7 @@ mod builtin;
 mod checked;
 mod error;
 mod file;
+mod layers;
 mod load;
 mod validate;
 mod values;
@@ -41,9 +42,10 @@ pub use animation::Animation;
 pub use builtin::{Builtin, DEFAULT_SCENE, builtins};
 pub use checked::Scene;
 pub use error::SceneError;
+pub use layers::{Layer, LayerSet};
 pub use validate::{
     FARTHEST_CAMERA, HORIZON_RADIUS, ISCO_RADIUS, MAX_IMAGE_SIDE, MAX_TOLERANCE, NARROWEST_FOV,
     WIDEST_DISK,
 };
-pub use values::{Camera, DEFAULT_TOLERANCE, Disk, ImageSize};
+pub use values::{Camera, DEFAULT_TOLERANCE, Disk, ImageSize, Light, Tone};
 pub use view::{Affine, PixelRay, View};

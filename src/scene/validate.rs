@@ -81,11 +81,7 @@ pub(super) fn image(
 ) -> Result<ImageSettings, SceneError> {
     self::tolerance(tolerance)?;
     let size = image_size(width, height)?;
-    Ok(ImageSettings {
-        size,
-        antialias,
-        tolerance,
-    })
+    Ok(ImageSettings::new(size, antialias, tolerance))
 }
 
 /// Checks an edge's largest error, in pixels: above 0, at most [`MAX_TOLERANCE`].

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use super::layers::LayerSet;
+
 /// The largest error of an edge where none is given, in pixels: no 8-bit picture shows a thousandth of a pixel.
 pub const DEFAULT_TOLERANCE: f64 = 1e-3;
 
@@ -72,7 +74,29 @@ pub struct ImageSize {
     pub height: u32,
 }
 
-/// A picture's size, and how its edges are drawn.
+/// The light of the disk.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Light {
+    /// Each ring shines as a black body.
+    BlackBody {
+        /// The temperature of the hottest ring, in kelvin.
+        temperature: f64,
+    },
+    /// Grey: the energy flux of all wavelengths together.
+    Bolometric,
+}
+
+/// How bright light becomes values of a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Tone {
+    /// Highlights roll off towards white.
+    #[default]
+    Neutral,
+    /// Highlights are clipped.
+    None,
+}
+
+/// A picture's size, how its edges are drawn, and how light becomes its values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ImageSettings {
     pub(super) size: ImageSize,
@@ -80,4 +104,26 @@ pub(super) struct ImageSettings {
     pub(super) antialias: bool,
     /// The largest error of an edge, in pixels.
     pub(super) tolerance: f64,
+    /// In stops: light is multiplied by 2 to this power.
+    pub(super) exposure: f64,
+    pub(super) tone: Tone,
+    /// Of a PNG picture's sample, 8 or 16.
+    pub(super) bits: u8,
+    /// What `.exr` and `.npz` files hold, if it is given.
+    pub(super) layers: LayerSet,
+}
+
+impl ImageSettings {
+    /// The settings of a picture of which nothing else is said.
+    pub(super) fn new(size: ImageSize, antialias: bool, tolerance: f64) -> Self {
+        Self {
+            size,
+            antialias,
+            tolerance,
+            exposure: 0.0,
+            tone: Tone::Neutral,
+            bits: 8,
+            layers: LayerSet::default(),
+        }
+    }
 }

@@ -211,7 +211,7 @@ impl Animation {
             outer: self.outer,
             normal: self.normal.at(time),
         };
-        Scene::at_radius(camera, radius, disk, self.settings).map_err(|error| {
+        Scene::at_radius(camera, radius, disk, None, self.settings).map_err(|error| {
             if self.is_still() {
                 error
             } else {

@@ -1,0 +1,5 @@
+//! Light: what a ray that meets the disk shows.
+
+mod sight;
+
+pub use sight::Sight;

@@ -1,0 +1,120 @@
+//! What a frame of data may hold: its layers.
+
+use core::fmt;
+
+/// One kind of data of every pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Layer {
+    /// The share of the pixel's square that the disk covers, 0 to 1; with hard edges 0 or 1.
+    Coverage,
+    /// The order of the image in which the disk is seen, −1 where it is not.
+    Order,
+    /// The radius at which the disk is seen, in Schwarzschild radii.
+    Radius,
+    /// The azimuth about the disk's axis, counterclockwise, 0 to 2π.
+    Azimuth,
+    /// The ratio of observed to emitted frequency, `g = 1/(1 + z)`.
+    Redshift,
+    /// The cosine of the angle between the light and the disk's normal, where it is emitted and for the matter there.
+    EmissionCosine,
+    /// The temperature of the black body that is seen, in kelvin.
+    Temperature,
+    /// Linear light, red, green and blue of Rec. 709, times the pixel's coverage.
+    Colour,
+    /// The share of the pixel's square that hides the sky: covered by the disk or by the hole's shadow.
+    Alpha,
+}
+
+impl Layer {
+    /// The layers that a scene may name.
+    pub const NAMED: [Self; 8] = [
+        Self::Coverage,
+        Self::Order,
+        Self::Radius,
+        Self::Azimuth,
+        Self::Redshift,
+        Self::EmissionCosine,
+        Self::Temperature,
+        Self::Colour,
+    ];
+
+    /// The layer's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Coverage => "coverage",
+            Self::Order => "order",
+            Self::Radius => "radius",
+            Self::Azimuth => "azimuth",
+            Self::Redshift => "redshift",
+            Self::EmissionCosine => "emission_cosine",
+            Self::Temperature => "temperature",
+            Self::Colour => "colour",
+            Self::Alpha => "alpha",
+        }
+    }
+
+    /// The layer that a scene calls by this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::NAMED.into_iter().find(|layer| layer.name() == name)
+    }
+
+    /// The numbers that it has for each pixel.
+    pub fn channels(self) -> usize {
+        if self == Self::Colour { 3 } else { 1 }
+    }
+
+    /// What it holds where nothing of the disk is seen.
+    pub fn nothing(self) -> f32 {
+        match self {
+            Self::Coverage | Self::Colour | Self::Alpha => 0.0,
+            Self::Order => -1.0,
+            Self::Radius
+            | Self::Azimuth
+            | Self::Redshift
+            | Self::EmissionCosine
+            | Self::Temperature => f32::NAN,
+        }
+    }
+}
+
+/// A set of layers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct LayerSet(u16);
+
+impl LayerSet {
+    /// The same set with one layer more.
+    #[must_use]
+    pub fn with(self, layer: Layer) -> Self {
+        Self(self.0 | 1 << layer as u16)
+    }
+
+    /// Whether a layer is in it.
+    pub fn has(self, layer: Layer) -> bool {
+        self.0 >> layer as u16 & 1 == 1
+    }
+
+    /// Whether no layer is in it.
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Its layers, in the order of [`Layer`].
+    pub fn iter(self) -> impl Iterator<Item = Layer> {
+        let all = Layer::NAMED.into_iter().chain([Layer::Alpha]);
+        all.filter(move |&layer| self.has(layer))
+    }
+}
+
+impl FromIterator<Layer> for LayerSet {
+    fn from_iter<T: IntoIterator<Item = Layer>>(layers: T) -> Self {
+        layers.into_iter().fold(Self::default(), Self::with)
+    }
+}
+
+/// The names, as TOML writes a list of them.
+impl fmt::Display for LayerSet {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names: Vec<&str> = self.iter().map(Layer::name).collect();
+        write!(f, "{names:?}")
+    }
+}
