@@ -52,21 +52,26 @@ macro_rules! builtin {
     };
 }
 
-static BUILTINS: [Builtin; 9] = [
+static BUILTINS: [Builtin; 14] = [
     builtin!("classic"),
     builtin!("face-on"),
     builtin!("edge-on"),
     builtin!("close-up"),
     builtin!("inside"),
     builtin!("photon-ring"),
+    builtin!("lit"),
+    builtin!("luminet"),
+    builtin!("rings"),
     builtin!("orbit"),
     builtin!("approach"),
     builtin!("tilt"),
+    builtin!("lit-orbit"),
+    builtin!("plunge"),
 ];
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Animation, Scene, View};
+    use super::super::{Animation, Light, Scene, View};
     use super::*;
 
     #[test]
@@ -103,6 +108,59 @@ mod tests {
         assert_eq!(View::new(&scene("face-on")).n_a(), 0.0);
         assert!((radius("close-up") - 6.0).abs() < 0.1);
         assert!(radius("inside") > 1.0 && radius("inside") < 1.5);
+    }
+
+    #[test]
+    fn lit_scenes_are_what_their_names_say() {
+        let light = |name| Scene::builtin(name).unwrap().light();
+        let black_body = Some(Light::BlackBody {
+            temperature: 7000.0,
+        });
+        for name in ["lit", "rings", "lit-orbit", "plunge"] {
+            assert_eq!(light(name), black_body, "{name}");
+        }
+        assert_eq!(light("luminet"), Some(Light::Bolometric));
+        assert_eq!(light(DEFAULT_SCENE), None);
+        let classic = Scene::builtin("classic").unwrap();
+        assert_eq!(
+            classic.with_light(black_body).unwrap(),
+            Scene::builtin("lit").unwrap()
+        );
+        let orbit = Animation::load("orbit").unwrap();
+        assert_eq!(
+            orbit.with_light(black_body).unwrap(),
+            Animation::load("lit-orbit").unwrap()
+        );
+        // 80° from the pole.
+        let n_p = |name| View::new(&Scene::builtin(name).unwrap()).n_p();
+        for name in ["lit", "luminet", "rings"] {
+            assert!(
+                (n_p(name) - libm::cos(80.0_f64.to_radians())).abs() < 1e-5,
+                "{name}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_plunge_ends_above_the_photon_sphere_with_the_hole_in_view() {
+        let plunge = Animation::load("plunge").unwrap();
+        let mut before = f64::INFINITY;
+        for number in 1..=plunge.frames() {
+            let scene = plunge.check(number).unwrap();
+            assert!(scene.radius() <= before && scene.radius() > 1.5);
+            before = scene.radius();
+            // Above the disk.
+            assert!(scene.camera().position.z > 1.0);
+            // The angle from the picture's centre to the hole's, and to the shadow's nearest edge from there: all rays
+            // within sin α = b_c √(1 − 1/r)/r, b_c = 3√3/2, fall in (Synge 1966).
+            let view = View::new(&scene);
+            let centre = view.ray_at(0.0, 0.0);
+            let to_hole = libm::atan2(centre.transverse(), centre.z);
+            let shadow = libm::asin(1.5 * 3.0_f64.sqrt() * view.slope_scale());
+            let half_height = scene.camera().fov_degrees.to_radians() / 2.0;
+            assert!((to_hole - shadow).abs() < half_height, "frame {number}");
+        }
+        assert!((before - 1.55).abs() < 1e-4);
     }
 
     #[test]

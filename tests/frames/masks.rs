@@ -113,7 +113,7 @@ fn small_scenes() -> Vec<(String, Scene)> {
 fn the_methods_agree_on_every_scene() {
     let lookup = table("standard").lookup();
     let scenes = small_scenes();
-    assert_eq!(scenes.len(), 15);
+    assert_eq!(scenes.len(), 20);
     for (name, scene) in scenes {
         let exact = by_pixels(&scene, &Exact);
         assert!(
