@@ -50,7 +50,7 @@ pub(super) struct DiskTable {
 
 /// `[disk.light]`.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "the table [disk.light]")]
 struct LightTable {
     model: Option<LightModel>,
     temperature: Option<f64>,

@@ -186,6 +186,11 @@ mod tests {
             "",
             &["line", "`colour`"],
         );
+        refused(
+            "light = 3",
+            "",
+            &["line", "expected the table [disk.light]"],
+        );
     }
 
     #[test]
