@@ -217,6 +217,11 @@ fn what_cannot_be_is_refused_with_its_frame() {
     );
     refused(
         still,
+        &keys(&[key(5, "exposure = 1")]),
+        &["`exposure`", "line"],
+    );
+    refused(
+        still,
         &keys(&[key(5, "focus = [0, 0]")]),
         &["three numbers", "line"],
     );

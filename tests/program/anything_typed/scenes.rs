@@ -13,7 +13,7 @@ use crate::harness::{files, with_animation};
 const SCENES: u32 = 1000;
 
 /// A scene's keys: the section, the key, and valid values.
-const KEYS: [(&str, &str, &[&str]); 18] = [
+const KEYS: [(&str, &str, &[&str]); 24] = [
     ("camera", "position", &["[20, 0, 5]", "[0.0, 1.2, 0.1]"]),
     ("camera", "focus", &["[0, 0, 0]", "[1, 2, 3]"]),
     ("camera", "up", &["[0, 0.1, 1]"]),
@@ -21,10 +21,17 @@ const KEYS: [(&str, &str, &[&str]); 18] = [
     ("disk", "inner", &["3", "5.5"]),
     ("disk", "outer", &["12", "1e6"]),
     ("disk", "normal", &["[0, 0, 1]", "[1e300, 1, 0]"]),
+    ("disk.light", "model", &["\"blackbody\""]),
+    ("disk.light", "temperature", &["7000", "1e9"]),
     ("image", "width", &["24", "1"]),
     ("image", "height", &["16", "1"]),
     ("image", "antialias", &["true", "false"]),
     ("image", "tolerance", &["0.001", "1"]),
+    ("image", "exposure", &["0", "-3.5"]),
+    ("image", "tone", &["\"neutral\"", "\"none\""]),
+    ("image", "bits", &["8", "16"]),
+    // A PNG picture holds none.
+    ("image", "layers", &["[]"]),
     ("animation", "frames", &["5"]),
     ("animation", "fps", &["24", "23.976"]),
     ("animation", "interpolation", &["\"smooth\"", "\"linear\""]),
@@ -113,38 +120,41 @@ fn scene() -> impl Strategy<Value = Vec<u8>> {
         1 => (0.0..1.0, Just(Vec::new())).prop_map(Some),
         1 => (0.0..1.0, proptest::collection::vec(any::<u8>(), 1..20)).prop_map(Some),
     ];
-    (keys, any::<[bool; 3]>(), harm).prop_map(|(values, [animated, keyframed, windows], harm)| {
-        let mut text = String::new();
-        let mut part = "";
-        for (&(of, key, _), (how_often, value)) in KEYS.iter().zip(values) {
-            let is_asked = match key {
-                _ if of == "animation" => animated && (key != "orbit" || !keyframed),
-                _ => !of.starts_with('[') || (animated && keyframed),
-            };
-            if !is_asked || how_often == 0 {
-                continue;
+    (keys, any::<[bool; 4]>(), harm).prop_map(
+        |(values, [animated, keyframed, windows, lit], harm)| {
+            let mut text = String::new();
+            let mut part = "";
+            for (&(of, key, _), (how_often, value)) in KEYS.iter().zip(values) {
+                let is_asked = match key {
+                    _ if of == "disk.light" => lit,
+                    _ if of == "animation" => animated && (key != "orbit" || !keyframed),
+                    _ => !of.starts_with('[') || (animated && keyframed),
+                };
+                if !is_asked || how_often == 0 {
+                    continue;
+                }
+                if of != part {
+                    text.extend(["[", of, "]\n"]);
+                    part = of;
+                }
+                let line = format!("{key} = {value}\n");
+                text += &line.repeat(if how_often == 1 { 2 } else { 1 });
             }
-            if of != part {
-                text.extend(["[", of, "]\n"]);
-                part = of;
+            if windows {
+                text = text.replace('\n', "\r\n");
             }
-            let line = format!("{key} = {value}\n");
-            text += &line.repeat(if how_often == 1 { 2 } else { 1 });
-        }
-        if windows {
-            text = text.replace('\n', "\r\n");
-        }
-        let mut bytes = text.into_bytes();
-        if let Some((share, inserted)) = harm {
-            let at = (share * bytes.len() as f64) as usize;
-            if inserted.is_empty() {
-                bytes.truncate(at);
-            } else {
-                bytes.splice(at..at, inserted);
+            let mut bytes = text.into_bytes();
+            if let Some((share, inserted)) = harm {
+                let at = (share * bytes.len() as f64) as usize;
+                if inserted.is_empty() {
+                    bytes.truncate(at);
+                } else {
+                    bytes.splice(at..at, inserted);
+                }
             }
-        }
-        bytes
-    })
+            bytes
+        },
+    )
 }
 
 #[test]
