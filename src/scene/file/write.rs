@@ -147,7 +147,8 @@ mod tests {
     use super::*;
     use crate::scene::layers::{Layer, LayerSet};
 
-    const OLDEST: &str = "[camera]\nposition = [20.0, 0.0, 5.0]\nfocus = [0.0, 0.0, 0.0]\nup = [0.0, 0.0, 1.0]\nfov = 40.0\n\
+    const OLDEST: &str = "[camera]\nposition = [20.0, 0.0, 5.0]\nfocus = [0.0, 0.0, 0.0]\n\
+        up = [0.0, 0.0, 1.0]\nfov = 40.0\n\
         \n[disk]\ninner = 3.0\nouter = 12.0\nnormal = [0.0, 0.0, 1.0]\n\n\
         [image]\nwidth = 64\nheight = 36\nantialias = true\ntolerance = 0.001\n";
 
