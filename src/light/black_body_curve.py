@@ -2,8 +2,8 @@
 
 Usage: pip install colour-science numpy; python3 black_body_curve.py > black_body_curve.rs
 
-The CIE 1931 2-degree colour matching functions, 360 to 830 nm by 1 nm, come from the package colour-science (BSD-3-Clause,
-written with its version 0.4.7). X, Y and Z are sums over these wavelengths; black_body.rs says what the pieces mean.
+The CIE 1931 2-degree colour matching functions, 360 to 830 nm by 1 nm, come from the package colour-science
+(BSD-3-Clause, version 0.4.7). X, Y and Z are sums over these wavelengths. black_body.rs says what the pieces mean.
 """
 
 import warnings
@@ -24,8 +24,7 @@ matching = np.asarray(functions.values)
 assert len(wavelength) == 471 and (functions.wavelengths[0], functions.wavelengths[-1]) == (360, 830)
 
 second_radiation = PLANCK * LIGHT_SPEED / BOLTZMANN
-# The Wien exponent of the longest wavelength that each function sees.
-wien = np.array([second_radiation / wavelength[matching[:, j] > 0][-1] for j in range(3)])
+wien = second_radiation / wavelength[-1]
 
 
 def logarithms(t):
@@ -39,9 +38,10 @@ def logarithms(t):
 
 
 def smooth(s):
-    """ln(XYZ/T) + wien/T at s = T/(T + SCALE)."""
+    """ln(Y/T) + wien/T, X/Y and Z/Y at s = T/(T + SCALE)."""
     t = SCALE * s / np.maximum(1 - s, 1e-10)  # Up to 6e12 K, as good as infinite.
-    return logarithms(t) - np.log(t)[:, None] + wien / t[:, None]
+    x, y, z = logarithms(t).T
+    return np.column_stack([y - np.log(t) + wien / t, np.exp(x - y), np.exp(z - y)])
 
 
 first = LOWEST / (LOWEST + SCALE)
@@ -53,9 +53,9 @@ for i in range(PIECES):
     between = np.linspace(-1, 1, 101)
     series = chebyshev.chebfit(nodes, smooth(place(nodes)), DEGREE)
     error = max(error, np.abs(chebyshev.chebval(between, series).T - smooth(place(between))).max())
-    pieces.append([[f"{c:.9f}" for c in chebyshev.cheb2poly(series[:, j])] for j in range(3)])
+    pieces.append([[f"{c:z.9f}" for c in chebyshev.cheb2poly(series[:, j])] for j in range(3)])
 
-print(f"""//! Written by `black_body_curve.py`; its greatest error is {error:.1e}, relative to X, Y and Z.
+print(f"""//! Written by `black_body_curve.py`; its greatest error is {error:.1e} of Y.
 
 /// The lowest temperature of the curve, in kelvin.
 pub(super) const LOWEST: f64 = {LOWEST};
@@ -63,10 +63,11 @@ pub(super) const LOWEST: f64 = {LOWEST};
 /// The temperature at the middle of the curve's axis, `s = T/(T + SCALE)`, in kelvin.
 pub(super) const SCALE: f64 = {SCALE};
 
-/// The factor of 1/T that is taken out of ln X, ln Y and ln Z, in kelvin.
-pub(super) const WIEN: [f64; 3] = [{", ".join(f"{w:.13}" for w in wien)}];
+/// The Wien exponent of the longest wavelength, hc/λk for 830 nm, in kelvin.
+pub(super) const WIEN: f64 = {wien:.11};
 
-/// Polynomials of ln(X/T), ln(Y/T) and ln(Z/T), constant term first, over pieces of equal width from `LOWEST` to s = 1.
+/// Polynomials of ln(Y/T) + WIEN/T, X/Y and Z/Y, constant term first, over pieces of equal width from
+/// `LOWEST` to s = 1.
 #[rustfmt::skip]
 pub(super) const PIECES: [[[f64; {DEGREE + 1}]; 3]; {PIECES}] = [""")
 for piece in pieces:

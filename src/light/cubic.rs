@@ -16,8 +16,8 @@ pub(super) fn at([a, b, c, d]: [f32; 4], t: f32) -> f32 {
     a + t * (b + t * (c + t * d))
 }
 
-/// Returns the place in [0, 1) of a number with these `bits` within its cell, whose numbers differ in their `shift` lowest
-/// bits only.
+/// Returns the place in [0, 1) of a number with these `bits` within its cell, whose numbers differ in their `shift`
+/// lowest bits only.
 #[inline(always)]
 pub(super) fn fraction(bits: u32, shift: u32) -> f32 {
     const MANTISSA: u32 = f32::MANTISSA_DIGITS - 1;

@@ -1,7 +1,7 @@
 //! The flux of a thin disk around a Schwarzschild hole, with no torque at the innermost stable orbit.
 //!
-//! Page & Thorne, *Disk-accretion onto a black hole. I*, ApJ 191, 499 (1974), equations (11b) and (15n) for a hole
-//! without spin. With R = 2r, the radius in units of GM/c²,
+//! Page & Thorne, *Disk-accretion onto a black hole. I*, Astrophysical Journal 191, 499 (1974), equations (11b) and
+//! (15n) for a hole without spin. With R = 2r, the radius in units of GM/c²,
 //!
 //! ```text
 //! F(R) = 3/(8π) Ṁ/M² · B(R) / (R^(5/2) (R − 3)),    B(R) = ∫ (σ² − 6)/(σ² − 3) dσ   from √6 to √R
@@ -30,7 +30,7 @@ const PEAK: f64 = 1.145_894_732_441_721_8e-4;
 const SQRT_3: f64 = 1.732_050_807_568_877_3;
 const SQRT_6: f64 = 2.449_489_742_783_178;
 
-/// Returns F/F_max at the inverse radius `u`, in inverse Schwarzschild radii, `0 ≤ u ≤ 1/3`.
+/// Returns `F/F_max` at the inverse radius `u`, in inverse Schwarzschild radii, `0 ≤ u ≤ 1/3`.
 ///
 /// The relative error is at most 1e-14 (against 80 digits, R from 6(1 + 1e-9) to 1e9).
 pub fn relative(u: f64) -> f64 {
@@ -38,7 +38,7 @@ pub fn relative(u: f64) -> f64 {
     root * root
 }
 
-/// Returns √(F/F_max) with the sign of `1 − 3u`, for `0 ≤ u < 2/3`.
+/// Returns `√(F/F_max)` with the sign of `1 − 3u`, for `0 ≤ u < 2/3`.
 ///
 /// It is analytic through the innermost stable orbit, u = 1/3, where it changes its sign, so that it can be
 /// interpolated across that orbit. The relative error is at most 5e-15.

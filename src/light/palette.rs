@@ -3,58 +3,79 @@
 use super::radiance::RadianceTable;
 use super::tone::DisplayTransform;
 
-/// The codes of 8 bits that [`DisplayTransform::rgb8`] gives to the light of each amplitude y.
+/// The 8-bit colours of one light on one display, by the amplitude y.
 ///
-/// Entries are equally many in each octave of y: the bits of y, without the last ones, are the index. They reach from the
-/// amplitude below which everything is black to the one above which nothing changes, so that half a step of y changes a
-/// code by 0.1 at most; then an entry is within 0.6 codes of the exact value.
+/// 20,000 entries stand at equal distances on an axis that is nearly ln y: the bits of y as an integer. They reach from
+/// the amplitude below which all is black to the one above which nothing changes, so that the distance follows from how
+/// fast the light rises. A code is within 0.6 of the exact one, [`DisplayTransform::encode`] times 255, of which 0.5 is
+/// the rounding.
+///
+/// There is one exception, without a tone ([`Tone::None`]): where light of 1900 K is overexposed five times or more,
+/// its blue enters the gamut there and rises by more than a code within an entry.
+///
+/// [`Tone::None`]: crate::scene::Tone::None
 #[derive(Debug, Clone)]
 pub struct Palette {
-    /// The bits of the first and the last amplitude.
+    /// The bits of the first amplitude.
     first: i32,
-    last: i32,
     /// The entries for each step of the bits, times 2³².
     scale: u64,
-    entries: Box<[[u8; 4]; Self::ENTRIES]>,
+    entries: Vec<[u8; 4]>,
+    /// The colour of all larger amplitudes.
+    brightest: [u8; 4],
 }
 
 impl Palette {
-    /// A power of two, so that a mask keeps the index within the array.
-    const ENTRIES: usize = 16384;
+    const ENTRIES: usize = 20_000;
+    /// So many entries are interpolated where their codes differ by less than a quarter. A bend between them, where a
+    /// colour enters the gamut or its highlights begin, is then missed by a sixteenth of a code at most.
+    const BLOCK: usize = 4;
 
     /// Computes the colours of this light on this display.
     pub fn new(light: &RadianceTable, display: &DisplayTransform) -> Self {
-        let codes = |bits: u32| {
-            let rgb = light.rgb(f32::from_bits(bits)).map(f64::from);
-            display.encode(rgb).map(|value| value * 255.0)
-        };
+        let values = |bits: u32| display.values(light.rgb(f32::from_bits(bits)));
         let end = light.end().to_bits();
-        let brightest = codes(end);
-        let black = |bits: u32| codes(bits).iter().all(|&code| code < 0.5);
+        let brightest = values(end);
+        let black = |bits: u32| values(bits).iter().all(|value| value * 255.0 < 0.5);
         let unchanging = |bits: u32| {
-            codes(bits)
-                .iter()
-                .zip(brightest)
-                .all(|(code, end)| (code - end).abs() < 0.4)
+            let mut pairs = values(bits).into_iter().zip(brightest);
+            pairs.all(|(value, end)| (end - value).abs() * 255.0 < 0.4)
         };
         let seen = first_that(light.first().to_bits(), end, |bits| !black(bits));
         let last = end - first_that(0, end - seen, |below| !unchanging(end - below));
         // One entry before the first colour that is seen, and none beyond the last index.
         let step = (last - seen) / (Self::ENTRIES as u32 - 2) + 1;
         let first = seen - step;
-        let mut entries = Box::new([[0, 0, 0, 255]; Self::ENTRIES]);
-        for (entry, bits) in entries
+        let entry = |place: usize| values(first + place as u32 * step + step / 2);
+        let mut entries = vec![[0; 4]; Self::ENTRIES];
+        let mut start = entry(0);
+        for (block, colours) in entries
+            .as_chunks_mut::<{ Self::BLOCK }>()
+            .0
             .iter_mut()
-            .zip((first..).step_by(step as usize))
-            .skip(1)
+            .enumerate()
         {
-            let [r, g, b] = display.rgb8(light.rgb(f32::from_bits(bits + step / 2)));
-            *entry = [r, g, b, 255];
+            let place = block * Self::BLOCK;
+            let end = entry(place + Self::BLOCK);
+            let flat = (0..3).all(|c| (end[c] - start[c]).abs() * 255.0 < 0.25);
+            for (i, colour) in colours.iter_mut().enumerate() {
+                let [r, g, b] = if flat {
+                    let t = i as f32 / Self::BLOCK as f32;
+                    [0, 1, 2].map(|c| start[c] + (end[c] - start[c]) * t)
+                } else {
+                    entry(place + i)
+                }
+                .map(|value| (value * 255.0 + 0.5) as u8);
+                *colour = [r, g, b, 255];
+            }
+            start = end;
         }
+        // The first entry stands for all that is not seen.
+        entries[0] = [0, 0, 0, 255];
         Self {
             first: first as i32,
-            last: last as i32,
             scale: (1 << 32) / u64::from(step),
+            brightest: entries[Self::ENTRIES - 1],
             entries,
         }
     }
@@ -64,14 +85,14 @@ impl Palette {
     #[inline]
     pub fn rgb8(&self, y: f32) -> [u8; 4] {
         // The bits of positive numbers rise with them, and those of negative ones are negative.
-        let bits = (y.to_bits() as i32).clamp(self.first, self.last);
-        let place = (bits - self.first) as u64 * self.scale >> 32;
-        self.entries[place as usize & (Self::ENTRIES - 1)]
+        let beyond_first = (y.to_bits() as i32).max(self.first) - self.first;
+        let place = (beyond_first as u64 * self.scale) >> 32;
+        *self.entries.get(place as usize).unwrap_or(&self.brightest)
     }
 }
 
-/// Returns the first number from `low` to `high` for which `is_so` holds; `high` where there is none. It is found to the
-/// last bit where `is_so` changes once in each half octave.
+/// Returns the first number from `low` to `high` for which `is_so` holds; `high` where there is none. It is found to
+/// the last bit where `is_so` changes once in each half octave.
 fn first_that(low: u32, high: u32, is_so: impl Fn(u32) -> bool) -> u32 {
     const STEP: u32 = 1 << (f32::MANTISSA_DIGITS - 2);
     let (mut no, mut yes) = (low, low);
@@ -100,55 +121,46 @@ mod tests {
     use crate::light::rec709::luminance;
     use crate::scene::{Light, Tone};
 
-    /// The greatest distance of a code from the exact one.
-    fn worst_error(light: Light, exposure: f64, tone: Tone) -> f64 {
+    /// The greatest distance of a code from the exact one, among places that are so many bits of y apart.
+    fn worst_error(light: Light, display: &DisplayTransform, spacing: usize) -> f64 {
         let radiance = Radiance::new(light);
-        let display = DisplayTransform::new(exposure, tone);
-        let palette = Palette::new(&RadianceTable::new(&radiance), &display);
-        let mut worst = 0.0_f64;
-        let mut check = |bits: u32| {
-            let y = f32::from_bits(bits);
-            let rgb = radiance.rgb(f64::from(y));
-            if luminance(rgb) > 1e35 {
-                return; // The table of the light ends here.
-            }
-            let exact = display.encode(rgb);
-            let found = palette.rgb8(y);
-            assert_eq!(found[3], 255);
-            for (found, exact) in found.into_iter().zip(exact) {
-                worst = worst.max((f64::from(found) - 255.0 * exact).abs());
-            }
+        let palette = Palette::new(&RadianceTable::new(&radiance), display);
+        let exact = |y: f32| {
+            display
+                .encode(radiance.rgb(f64::from(y)))
+                .map(|c| 255.0 * c)
         };
-        (1e-38_f32.to_bits()..1e17_f32.to_bits())
-            .step_by(1 << 17)
-            .for_each(&mut check);
-        let step = ((palette.last - palette.first) as usize / 20_000).max(1);
-        (palette.first as u32 - 9..palette.last as u32 + 9)
-            .step_by(step)
-            .for_each(&mut check);
-        println!("{light:?} {exposure} {tone:?}: {worst:.3}");
+        let mut worst = 0.0_f64;
+        for bits in (1e-19_f32.to_bits()..1e17_f32.to_bits()).step_by(spacing) {
+            let y = f32::from_bits(bits);
+            if luminance(radiance.rgb(f64::from(y))) > 1e35 {
+                break; // The table of the light ends here.
+            }
+            for (found, exact) in palette.rgb8(y).into_iter().zip(exact(y)) {
+                worst = worst.max((f64::from(found) - exact).abs());
+            }
+        }
         worst
     }
 
     #[test]
-    fn entries_are_within_six_tenths_of_a_code() {
-        let hot = |temperature: f64| Light::BlackBody { temperature };
-        for tone in [Tone::Neutral, Tone::None] {
-            for light in [
-                Light::Bolometric,
-                hot(100.0),
-                hot(1000.0),
-                hot(2500.0),
-                hot(7000.0),
-                hot(3e4),
-                hot(1e9),
-            ] {
-                for exposure in [-100.0, -20.0, -2.5, 0.0, 3.0, 9.0, 30.0, 100.0] {
-                    let worst = worst_error(light, exposure, tone);
-                    assert!(worst <= 9.6, "{light:?}, {exposure}, {tone:?}: {worst}");
-                }
+    fn codes_are_within_six_tenths() {
+        let lights = [100.0, 1000.0, 2500.0, 7000.0, 3e4, 1e9]
+            .map(|temperature| Light::BlackBody { temperature })
+            .into_iter()
+            .chain([Light::Bolometric]);
+        for light in lights {
+            for exposure in [-100.0, -20.0, -2.5, 0.0, 3.0, 9.0, 30.0, 100.0] {
+                let display = DisplayTransform::new(exposure, Tone::Neutral);
+                let worst = worst_error(light, &display, 9973);
+                assert!(worst <= 0.6, "{light:?}, {exposure}: {worst}");
             }
         }
+        let light = Light::BlackBody {
+            temperature: 7000.0,
+        };
+        let worst = worst_error(light, &DisplayTransform::new(0.0, Tone::None), 997);
+        assert!(worst <= 0.6, "{worst}");
     }
 
     #[test]

@@ -2,8 +2,8 @@
 //!
 //! One number tells it, whatever the disk's light: the *amplitude* `y = g² √(F/F_max)`, the square root of the observed
 //! flux of all wavelengths together, `y² = g⁴ F/F_max`. Its parts are the redshift g and [`flux::signed_root`]. A ring
-//! that shines as a black body has the temperature `T_peak (F/F_max)^(1/4)`, and a shifted black body is a black body of g
-//! times its temperature, so that what is seen has `T = T_peak √y`.
+//! that shines as a black body has the temperature `T_peak (F/F_max)^(1/4)`, and a shifted black body is a black body
+//! of g times its temperature, so that what is seen has `T = T_peak √y`.
 //!
 //! [`flux::signed_root`]: super::flux::signed_root
 
@@ -37,8 +37,8 @@ impl Radiance {
         })
     }
 
-    /// Returns linear red, green and blue of Rec. 709 at the amplitude `y`; nothing where y is not positive. The hottest
-    /// ring at rest (y = 1) has luminance 1. Deep reds have a negative blue, and some a negative green.
+    /// Returns linear red, green and blue of Rec. 709 at the amplitude `y`; nothing where y is not positive. The
+    /// hottest ring at rest (y = 1) has luminance 1. Deep reds have a negative blue, and some a negative green.
     ///
     /// The luminance is right to 1e-7 (black bodies) or exact (bolometric, red = green = blue = y²).
     pub fn rgb(&self, y: f64) -> [f64; 3] {
@@ -56,8 +56,8 @@ impl Radiance {
     /// An upper bound of d ln(luminance)/d ln y at `y`.
     fn slope(&self, y: f64) -> f64 {
         match self.0 {
-            // exp(−w/T) falls with the Wien exponent of the longest visible wavelength at low temperatures, of the middle
-            // of the visible at high ones; T ∝ √y halves the slope.
+            // exp(−w/T) falls with the Wien exponent of the longest visible wavelength at low temperatures, of the
+            // middle of the visible at high ones; T ∝ √y halves the slope.
             Source::BlackBody { peak, .. } => 0.5 + 0.5 * 25_000.0 / (peak * y.sqrt()),
             Source::Grey => 2.0,
         }
@@ -66,10 +66,10 @@ impl Radiance {
 
 /// [`Radiance`] as a table: a few nanoseconds a value.
 ///
-/// An octave of y is cut into 4 to 1024 cells, as steeply as the light falls there, with a cubic for each colour in each
-/// cell. The luminance is right to 1e-5 from 1e-30 to 1e35 times the hottest ring's. Less than 1e-36 is nothing, more than
-/// 1e36 counts as about that, and so do amplitudes above 2⁶⁰, which no camera can see that is farther from the horizon than the
-/// rounding of its radius.
+/// An octave of y is cut into 4 to 1024 cells, as steeply as the light falls there, with a cubic for each colour in
+/// each cell. The luminance is right to 1e-5 from 1e-30 to 1e35 times the hottest ring's. Less than 1e-36 is nothing,
+/// more than 1e36 counts as about that, and so do amplitudes above 2⁶⁰, which no camera can see that is farther from
+/// the horizon than the rounding of its radius.
 #[derive(Debug, Clone)]
 pub struct RadianceTable {
     /// The start of the first octave.
@@ -121,8 +121,8 @@ impl RadianceTable {
         let mut at_start = rgb(start);
         for _ in 0..octave_count {
             // A cubic through four equidistant values of y^s over a cell of the relative width h is wrong by
-            // s⁴h⁴/(24 · 81) at most: 2e-6 for h = 1/(4s).
-            let cell_bits = ((4.0 * radiance.slope(start)) as u32)
+            // s⁴h⁴/(24 · 81) at most: 6e-6 for h = 1/(3s).
+            let cell_bits = ((3.0 * radiance.slope(start)) as u32)
                 .next_power_of_two()
                 .ilog2()
                 .clamp(2, 10);

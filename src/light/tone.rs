@@ -8,11 +8,11 @@
 //! 3. *Tone*: [`Tone::Neutral`] compresses highlights, [`Tone::None`] clips them.
 //! 4. *Encoding* as sRGB ([`srgb`]).
 //!
-//! The neutral tone is the highlight part of the [Khronos PBR Neutral tone mapper]. Up to 0.8 light stays as it is. Above,
-//! its largest component p becomes `1 − 0.04/(p − 0.6)`, with the same value and slope at 0.8, and the colour fades to a
-//! grey of that size, so that the hue stays and what is very bright is white. The other part of that tone mapper takes
-//! away up to 0.04 of all light, the reflection of a white room on a plastic surface. A disk that shines by itself has
-//! none, so that this part is left out (F₉₀ = 0 in the specification's terms).
+//! The neutral tone is the highlight part of the [Khronos PBR Neutral tone mapper]. Up to 0.8 light stays as it is.
+//! Above, its largest component p becomes `1 − 0.04/(p − 0.6)`, with the same value and slope at 0.8, and the colour
+//! fades to a grey of that size, so that the hue stays and what is very bright is white. The other part of that tone
+//! mapper takes away up to 0.04 of all light, the reflection of a white room on a plastic surface. A disk that shines
+//! by itself has none, so that this part is left out (F₉₀ = 0 in the specification's terms).
 //!
 //! [Khronos PBR Neutral tone mapper]: https://github.com/KhronosGroup/ToneMapping/blob/main/PBR_Neutral/README.md
 
@@ -45,21 +45,26 @@ impl DisplayTransform {
     }
 
     /// Returns [`Self::encode`] in 8 bits, rounded to the nearest code up to 0.001 codes.
-    #[inline]
+    #[inline(always)]
     pub fn rgb8(&self, rgb: [f32; 3]) -> [u8; 3] {
-        self.displayed(rgb.map(f64::from))
-            .map(|c| self.encoder.encode8(c as f32))
+        self.values(rgb).map(|value| (value * 255.0 + 0.5) as u8)
     }
 
     /// Returns [`Self::encode`] in 16 bits, rounded to the nearest code up to 0.05 codes.
-    #[inline]
+    #[inline(always)]
     pub fn rgb16(&self, rgb: [f32; 3]) -> [u16; 3] {
+        self.values(rgb).map(|value| (value * 65535.0 + 0.5) as u16)
+    }
+
+    /// Returns [`Self::encode`] up to 1e-6.
+    #[inline(always)]
+    pub(super) fn values(&self, rgb: [f32; 3]) -> [f32; 3] {
         self.displayed(rgb.map(f64::from))
-            .map(|c| self.encoder.encode16(c as f32))
+            .map(|c| self.encoder.encode(c as f32))
     }
 
     /// The first three steps. What is above 1 is left to the encoding to clip.
-    #[inline]
+    #[inline(always)]
     fn displayed(&self, rgb: [f64; 3]) -> [f64; 3] {
         let rgb = in_gamut(rgb.map(|c| c * self.scale));
         match self.tone {
@@ -70,20 +75,20 @@ impl DisplayTransform {
 }
 
 /// Moves a colour with a negative component towards the grey of its luminance. Without luminance it is black.
-#[inline]
+#[inline(always)]
 fn in_gamut(rgb: [f64; 3]) -> [f64; 3] {
     let least = rgb[0].min(rgb[1]).min(rgb[2]);
     if least >= 0.0 {
         return rgb;
     }
     let grey = luminance(rgb).max(0.0);
+    // grey + (c − grey) share, with the share at which the least component is exactly 0.
     let share = grey / (grey - least);
-    // Rounding may leave a component below 0 by its last digit.
-    rgb.map(|c| (grey + (c - grey) * share).max(0.0))
+    rgb.map(|c| (c - least) * share)
 }
 
-/// The specification's compression and desaturation, with K_s = 0.8 and K_d = 0.15.
-#[inline]
+/// The specification's compression and desaturation, with `K_s` = 0.8 and `K_d` = 0.15.
+#[inline(always)]
 fn compress_highlights(rgb: [f64; 3]) -> [f64; 3] {
     const START: f64 = 0.8;
     const DESATURATION: f64 = 0.15;
