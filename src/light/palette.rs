@@ -1,0 +1,180 @@
+//! The colours of one picture, ready for its bytes.
+
+use super::radiance::RadianceTable;
+use super::tone::DisplayTransform;
+
+/// The 8-bit colours of one light on one display, by the amplitude y.
+///
+/// 20,000 entries stand at equal distances on an axis that is nearly ln y: the bits of y as an integer. They reach from
+/// the amplitude below which all is black to the one above which nothing changes, so that the distance follows from how
+/// fast the light rises. A code is within 0.6 of the exact one, [`DisplayTransform::encode`] times 255, of which 0.5 is
+/// the rounding.
+///
+/// There is one exception, without a tone ([`Tone::None`]): where light of 1900 K is overexposed five times or more,
+/// its blue enters the gamut there and rises by more than a code within an entry.
+///
+/// [`Tone::None`]: crate::scene::Tone::None
+#[derive(Debug, Clone)]
+pub struct Palette {
+    /// The bits of the first amplitude.
+    first: i32,
+    /// The entries for each step of the bits, times 2³².
+    scale: u64,
+    entries: Vec<[u8; 4]>,
+    /// The colour of all larger amplitudes.
+    brightest: [u8; 4],
+}
+
+impl Palette {
+    const ENTRIES: usize = 20_000;
+    /// So many entries are interpolated where their codes differ by less than a quarter. A bend between them, where a
+    /// colour enters the gamut or its highlights begin, is then missed by a sixteenth of a code at most.
+    const BLOCK: usize = 4;
+
+    /// Computes the colours of this light on this display.
+    pub fn new(light: &RadianceTable, display: &DisplayTransform) -> Self {
+        let values = |bits: u32| display.values(light.rgb(f32::from_bits(bits)));
+        let end = light.end().to_bits();
+        let brightest = values(end);
+        let black = |bits: u32| values(bits).iter().all(|value| value * 255.0 < 0.5);
+        let unchanging = |bits: u32| {
+            let mut pairs = values(bits).into_iter().zip(brightest);
+            pairs.all(|(value, end)| (end - value).abs() * 255.0 < 0.4)
+        };
+        let seen = first_that(light.first().to_bits(), end, |bits| !black(bits));
+        let last = end - first_that(0, end - seen, |below| !unchanging(end - below));
+        // One entry before the first colour that is seen, and none beyond the last index.
+        let step = (last - seen) / (Self::ENTRIES as u32 - 2) + 1;
+        let first = seen - step;
+        let entry = |place: usize| values(first + place as u32 * step + step / 2);
+        let mut entries = vec![[0; 4]; Self::ENTRIES];
+        let mut start = entry(0);
+        for (block, colours) in entries
+            .as_chunks_mut::<{ Self::BLOCK }>()
+            .0
+            .iter_mut()
+            .enumerate()
+        {
+            let place = block * Self::BLOCK;
+            let end = entry(place + Self::BLOCK);
+            let flat = (0..3).all(|c| (end[c] - start[c]).abs() * 255.0 < 0.25);
+            for (i, colour) in colours.iter_mut().enumerate() {
+                let [r, g, b] = if flat {
+                    let t = i as f32 / Self::BLOCK as f32;
+                    [0, 1, 2].map(|c| start[c] + (end[c] - start[c]) * t)
+                } else {
+                    entry(place + i)
+                }
+                .map(|value| (value * 255.0 + 0.5) as u8);
+                *colour = [r, g, b, 255];
+            }
+            start = end;
+        }
+        // The first entry stands for all that is not seen.
+        entries[0] = [0, 0, 0, 255];
+        Self {
+            first: first as i32,
+            scale: (1 << 32) / u64::from(step),
+            brightest: entries[Self::ENTRIES - 1],
+            entries,
+        }
+    }
+
+    /// Returns red, green, blue and 255 at the amplitude `y`; black where it is not positive. NaN gives the
+    /// colour of one of the ends.
+    #[inline]
+    pub fn rgb8(&self, y: f32) -> [u8; 4] {
+        // The bits of positive numbers rise with them, and those of negative ones are negative.
+        let beyond_first = (y.to_bits() as i32).max(self.first) - self.first;
+        let place = (beyond_first as u64 * self.scale) >> 32;
+        *self.entries.get(place as usize).unwrap_or(&self.brightest)
+    }
+}
+
+/// Returns the first number from `low` to `high` for which `is_so` holds; `high` where there is none. It is found to
+/// the last bit where `is_so` changes once in each half octave.
+fn first_that(low: u32, high: u32, is_so: impl Fn(u32) -> bool) -> u32 {
+    const STEP: u32 = 1 << (f32::MANTISSA_DIGITS - 2);
+    let (mut no, mut yes) = (low, low);
+    while !is_so(yes) {
+        if yes == high {
+            return high;
+        }
+        no = yes;
+        yes = high.min(yes + STEP);
+    }
+    while no + 1 < yes {
+        let middle = no + (yes - no) / 2;
+        if is_so(middle) {
+            yes = middle;
+        } else {
+            no = middle;
+        }
+    }
+    yes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::Radiance;
+    use crate::light::rec709::luminance;
+    use crate::scene::{Light, Tone};
+
+    /// The greatest distance of a code from the exact one, among places that are so many bits of y apart.
+    fn worst_error(light: Light, display: &DisplayTransform, spacing: usize) -> f64 {
+        let radiance = Radiance::new(light);
+        let palette = Palette::new(&RadianceTable::new(&radiance), display);
+        let exact = |y: f32| {
+            display
+                .encode(radiance.rgb(f64::from(y)))
+                .map(|c| 255.0 * c)
+        };
+        let mut worst = 0.0_f64;
+        for bits in (1e-19_f32.to_bits()..1e17_f32.to_bits()).step_by(spacing) {
+            let y = f32::from_bits(bits);
+            if luminance(radiance.rgb(f64::from(y))) > 1e35 {
+                break; // The table of the light ends here.
+            }
+            for (found, exact) in palette.rgb8(y).into_iter().zip(exact(y)) {
+                worst = worst.max((f64::from(found) - exact).abs());
+            }
+        }
+        worst
+    }
+
+    #[test]
+    fn codes_are_within_six_tenths() {
+        let lights = [100.0, 1000.0, 2500.0, 7000.0, 3e4, 1e9]
+            .map(|temperature| Light::BlackBody { temperature })
+            .into_iter()
+            .chain([Light::Bolometric]);
+        for light in lights {
+            for exposure in [-100.0, -20.0, -2.5, 0.0, 3.0, 9.0, 30.0, 100.0] {
+                let display = DisplayTransform::new(exposure, Tone::Neutral);
+                let worst = worst_error(light, &display, 9973);
+                assert!(worst <= 0.6, "{light:?}, {exposure}: {worst}");
+            }
+        }
+        let light = Light::BlackBody {
+            temperature: 7000.0,
+        };
+        let worst = worst_error(light, &DisplayTransform::new(0.0, Tone::None), 997);
+        assert!(worst <= 0.6, "{worst}");
+    }
+
+    #[test]
+    fn any_number_has_a_colour() {
+        let light = RadianceTable::new(&Radiance::new(Light::BlackBody {
+            temperature: 7000.0,
+        }));
+        let palette = Palette::new(&light, &DisplayTransform::new(0.0, Tone::Neutral));
+        for y in [f32::NEG_INFINITY, -1.0, -0.0, 0.0, 1e-45, 1e-9] {
+            assert_eq!(palette.rgb8(y), [0, 0, 0, 255]);
+        }
+        for y in [1e12, f32::MAX, f32::INFINITY] {
+            assert_eq!(palette.rgb8(y), [255; 4]);
+        }
+        assert_eq!(palette.rgb8(f32::NAN)[3], 255);
+    }
+}
