@@ -11,12 +11,17 @@ const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
 /// Returns the inverse radius at which an orbit with `e² < 4/27` turns: u2 outside the photon sphere, u3 inside.
 pub(crate) fn turning_u(orbit: &Orbit) -> f64 {
+    turning_point(orbit).0
+}
+
+/// Returns [`turning_u`], and its difference from the photon sphere's 2/3 to its own last digits.
+pub(super) fn turning_point(orbit: &Orbit) -> (f64, f64) {
     let roots = RealRoots::new(orbit.e2, orbit.delta);
     let periapsis = roots.u1 + roots.a;
     if orbit.family == Family::Trapped {
-        periapsis + roots.delta
+        (periapsis + roots.delta, 0.5 * roots.delta - roots.shift)
     } else {
-        periapsis
+        (periapsis, -0.5 * roots.delta - roots.shift)
     }
 }
 

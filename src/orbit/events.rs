@@ -65,6 +65,13 @@ pub trait Orbits: Sync {
     /// # Errors
     /// Those of `follow`.
     fn first_crossing(&self, ray: Ray, radius: f64) -> Result<Option<f64>, OrbitError>;
+
+    /// Returns the inverse radius of `ray` after it has swept `angle` radians from its start; `None` where it has ended
+    /// by then, or where `angle` is not a number of 0 or more.
+    ///
+    /// # Errors
+    /// [`OrbitError::StepLimit`] where a stepped method gives up.
+    fn u_at_angle(&self, ray: Ray, angle: f64) -> Result<Option<f64>, OrbitError>;
 }
 
 /// A radius whose crossings are reported.

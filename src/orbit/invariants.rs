@@ -72,6 +72,16 @@ impl Orbit {
         }
     }
 
+    /// Returns du/dφ at the start.
+    #[inline]
+    pub(super) fn start_slope(&self) -> f64 {
+        if self.inward {
+            self.start.slope
+        } else {
+            -self.start.slope
+        }
+    }
+
     /// Returns how the ray ends.
     #[inline]
     pub fn fate(&self) -> Fate {

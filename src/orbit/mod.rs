@@ -3,7 +3,8 @@
 //! Units: the Schwarzschild radius is 1, `u = 1/r`, angles are in radians. A ray moves in a plane, where
 //! `d²u/dφ² = 3/2 u² − u`; its first integral is `e² = (du/dφ)² + u²(1 − u) = 1/b²`, b the impact parameter.
 //!
-//! [`Orbits::follow`] answers which radii a ray crosses, in which order and at which swept angles, and how it ends.
+//! [`Orbits::follow`] answers which radii a ray crosses, in which order and at which swept angles, and how it ends;
+//! [`Orbits::u_at_angle`] answers where it is at a given angle.
 //! Three methods implement it: [`exact::Exact`] (elliptic integrals), [`integrate::Adaptive`] and
 //! [`integrate::FixedStep`] (the equation itself, stepped in φ), and the [table](crate::table).
 
@@ -15,6 +16,7 @@ pub mod integrate;
 pub mod invariants;
 pub mod path;
 mod ray;
+mod taylor;
 
 #[cfg(feature = "chart")]
 pub(crate) use elliptic::turning_u;

@@ -1,9 +1,10 @@
 //! Puts a ray's events together from swept angles, for every method that computes those.
 
 use super::elliptic::turning_u;
-use super::events::{Event, EventKind, Orbits, TurningPoint, WatchedRadius};
+use super::events::{Event, EventKind, Fate, Orbits, TurningPoint, WatchedRadius};
 use super::invariants::{Family, Orbit, OrbitPoint};
-use super::ray::{OrbitError, Ray};
+use super::ray::{OrbitError, Ray, STRAIGHT, straight_u_at, within_flight};
+use super::taylor::{LONGEST_STEP, PhasePoint};
 
 /// A method that computes the angle a ray sweeps between two points of its orbit. Every such method implements
 /// [`Orbits`].
@@ -144,6 +145,127 @@ pub struct Crossings {
     pub outbound: Option<f64>,
 }
 
+/// The most anchors that [`point_at_angle`] takes. Two are enough but for rays that wind within rounding of the photon
+/// sphere, where any anchor gives u to a few units in the last place.
+const MOST_ANCHORS: u32 = 8;
+
+/// Returns the inverse radius at which `orbit` is after `angle` radians, and on which branch; `None` where it has ended
+/// by then, or where `angle` is not a number of 0 or more.
+///
+/// An *anchor* is a point of the orbit whose swept angle is known. From an anchor within a quarter of a radian the
+/// orbit equation leads to `angle` in a few Taylor steps, which have no singularity at the turning point. Such a guess
+/// needs one swept angle; without it the equation itself makes one, stepped from the start.
+///
+/// The error is that of the anchor's swept angle times |du/dφ|, and the rounding of the steps.
+pub(crate) fn point_at_angle<A: SweptAngles + ?Sized>(
+    angles: &A,
+    orbit: &Orbit,
+    angle: f64,
+    guess: Option<(f64, Branch)>,
+) -> Option<(f64, Branch)> {
+    if angle == 0.0 {
+        return Some((orbit.start.u, Branch::Direct));
+    }
+    if angle.is_nan() || angle < 0.0 {
+        return None;
+    }
+    if orbit.start.slope >= STRAIGHT {
+        let w = orbit.start_slope();
+        return straight_u_at(orbit.start.u, w, angle).map(|u| (u, Branch::Direct));
+    }
+    let mut anchor = match guess {
+        Some((u, branch)) if within_flight(u) => Anchor::at(angles, orbit, u, branch),
+        _ => Anchor::start(orbit),
+    };
+    let mut best = None;
+    for _ in 0..MOST_ANCHORS {
+        let left = angle - anchor.angle;
+        let Some(point) = anchor.point.advanced(left, orbit.delta) else {
+            anchor = Anchor::end(angles, orbit);
+            if angle < anchor.angle {
+                continue;
+            }
+            return None;
+        };
+        // The sign of du/dφ tells the branch.
+        let returning = turns(orbit) && (point.w < 0.0) == orbit.inward;
+        let branch = if returning {
+            Branch::Around
+        } else {
+            Branch::Direct
+        };
+        best = Some((point.u, branch));
+        if left.abs() <= LONGEST_STEP {
+            break;
+        }
+        anchor = Anchor::at(angles, orbit, point.u, branch);
+    }
+    best
+}
+
+/// A point of an orbit whose swept angle from the start is known.
+struct Anchor {
+    point: PhasePoint,
+    angle: f64,
+}
+
+impl Anchor {
+    fn start(orbit: &Orbit) -> Self {
+        Self {
+            point: PhasePoint::new(orbit.start.u, orbit.start_slope()),
+            angle: 0.0,
+        }
+    }
+
+    fn end<A: SweptAngles + ?Sized>(angles: &A, orbit: &Orbit) -> Self {
+        let OrbitPoint { u, slope } = orbit.end();
+        let w = if orbit.fate() == Fate::Capture {
+            slope
+        } else {
+            -slope
+        };
+        Self {
+            point: PhasePoint::new(u, w),
+            angle: angles.to_end(orbit),
+        }
+    }
+
+    /// Returns the turning point, or the start of an orbit without one.
+    fn turning<A: SweptAngles + ?Sized>(angles: &A, orbit: &Orbit) -> Self {
+        if !turns(orbit) {
+            return Self::start(orbit);
+        }
+        Self {
+            point: PhasePoint::turning(orbit),
+            angle: 0.5 * angles.around(orbit, orbit.start, orbit.start),
+        }
+    }
+
+    /// Returns the point at inverse radius `u` on a branch, or the turning point where the orbit does not reach u.
+    #[inline]
+    fn at<A: SweptAngles + ?Sized>(angles: &A, orbit: &Orbit, u: f64, branch: Branch) -> Self {
+        let Some(point) = orbit.point_at(u) else {
+            return Self::turning(angles, orbit);
+        };
+        let around = turns(orbit) && branch == Branch::Around;
+        let angle = if around {
+            angles.around(orbit, orbit.start, point)
+        } else {
+            angles.direct(orbit, orbit.start, point)
+        };
+        let behind_start = !around && !ahead(orbit, u);
+        let w = if orbit.inward == around {
+            -point.slope
+        } else {
+            point.slope
+        };
+        Self {
+            point: PhasePoint::new(u, w),
+            angle: if behind_start { -angle } else { angle },
+        }
+    }
+}
+
 impl<T: SweptAngles> Orbits for T {
     fn follow(&self, ray: Ray, radii: &[f64]) -> Result<Vec<Event>, OrbitError> {
         let watched = WatchedRadius::sorted(radii)?;
@@ -191,4 +313,11 @@ impl<T: SweptAngles> Orbits for T {
         let WatchedRadius { u, .. } = WatchedRadius::new(radius)?;
         Ok(self.first_crossing_at(&Orbit::new(ray), u))
     }
+
+    fn u_at_angle(&self, ray: Ray, angle: f64) -> Result<Option<f64>, OrbitError> {
+        Ok(point_at_angle(self, &Orbit::new(ray), angle, None).map(|(u, _)| u))
+    }
 }
+
+#[cfg(test)]
+mod tests;

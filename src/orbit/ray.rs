@@ -3,6 +3,21 @@
 /// The least inverse radius at which a ray may start. Beyond r = 1e100 the squares of `u` would underflow.
 pub const MIN_U: f64 = 1e-100;
 
+/// The |du/dφ| from which a ray's path is straight in (φ, u) to the last bit. Between the horizon and infinity
+/// `w² = e² − u²(1 − u)` varies by at most 4/27, and so w by a share of at most 2/(27w²), which is less than 2⁻⁵⁵ here.
+pub(super) const STRAIGHT: f64 = (1_u64 << 26) as f64;
+
+/// Returns whether an inverse radius lies between infinity and the horizon.
+#[inline]
+pub(super) fn within_flight(u: f64) -> bool {
+    0.0 < u && u < 1.0
+}
+
+/// Returns the inverse radius of a straight ray after `angle` > 0; `None` where it has ended.
+pub(super) fn straight_u_at(ray_u: f64, dudphi: f64, angle: f64) -> Option<f64> {
+    Some(ray_u + dudphi * angle).filter(|&u| within_flight(u))
+}
+
 /// A light ray: where it starts and how steeply, in its own plane.
 ///
 /// ```

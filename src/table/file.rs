@@ -237,6 +237,10 @@ impl Orbits for Table {
     fn first_crossing(&self, ray: Ray, radius: f64) -> Result<Option<f64>, OrbitError> {
         self.lookup().first_crossing(ray, radius)
     }
+
+    fn u_at_angle(&self, ray: Ray, angle: f64) -> Result<Option<f64>, OrbitError> {
+        self.lookup().u_at_angle(ray, angle)
+    }
 }
 
 /// A table's file whose head has been read and checked. The file stands after `start`.

@@ -20,3 +20,4 @@ mod integration;
 mod stepping_fails;
 mod swept_angles;
 mod turning_points;
+mod u_at_angle;

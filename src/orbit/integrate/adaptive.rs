@@ -6,7 +6,7 @@ use super::flight::{
     DEFAULT_MAX_STEPS, Departure, Flight, State, Step, acceleration, depart, opposite,
 };
 use crate::orbit::events::{Event, Orbits, TurningPoint, WatchedRadius};
-use crate::orbit::ray::{OrbitError, Ray};
+use crate::orbit::ray::{OrbitError, Ray, within_flight};
 
 /// The orbit equation integrated with the Runge–Kutta method DOP853 in steps that keep each swept angle's error below
 /// a tolerance.
@@ -71,6 +71,11 @@ impl Adaptive {
             max_steps: DEFAULT_MAX_STEPS,
         }
     }
+
+    /// Returns the error allowed in one step, relative to hypot(u, w).
+    fn step_error(&self) -> f64 {
+        (STEP_SHARE * self.tolerance.max(0.0)).clamp(FINEST, COARSEST)
+    }
 }
 
 impl Default for Adaptive {
@@ -92,6 +97,10 @@ impl Orbits for Adaptive {
     fn first_crossing(&self, ray: Ray, radius: f64) -> Result<Option<f64>, OrbitError> {
         self.first_event(ray, radius)
     }
+
+    fn u_at_angle(&self, ray: Ray, angle: f64) -> Result<Option<f64>, OrbitError> {
+        self.u_after(ray, angle)
+    }
 }
 
 impl Flight for Adaptive {
@@ -105,17 +114,15 @@ impl Flight for Adaptive {
             Departure::Done(crossings) => return Ok(crossings),
             Departure::Bound(state, crossings) => (state, crossings),
         };
-        let allowed = (STEP_SHARE * self.tolerance.max(0.0)).clamp(FINEST, COARSEST);
+        let allowed = self.step_error();
         let mut angle = 0.0;
         let mut h = FIRST_STEP;
         for _ in 0..self.max_steps {
             h = h.min(LONGEST_STEP).min(LONGEST_FALL / state.w.abs());
             let (next, error) = dop853::step_with_error(state, h);
-            // The estimate falls as h⁸. 0.9 is the usual allowance for its own error (Hairer, Nørsett & Wanner, §II.4),
-            // and the bounds limit the effect of one odd estimate.
-            let factor = 0.9 / (error / allowed).sqrt().sqrt().sqrt();
+            let factor = step_factor(error, allowed);
             if error > allowed {
-                h *= factor.max(0.2);
+                h *= factor;
                 continue;
             }
             let turns = opposite(state.w, next.w) || next.w == 0.0;
@@ -131,13 +138,45 @@ impl Flight for Adaptive {
             }
             angle += h;
             state = next;
-            h *= factor.min(4.0);
+            h *= factor;
         }
         Err(OrbitError::StepLimit {
             steps: self.max_steps,
             angle,
         })
     }
+
+    fn fly_for(&self, start: State, angle: f64) -> Result<Option<State>, OrbitError> {
+        let allowed = self.step_error();
+        let (mut state, mut left) = (start, angle);
+        let mut h = FIRST_STEP;
+        for _ in 0..self.max_steps {
+            h = h.min(LONGEST_STEP).min(LONGEST_FALL / state.w.abs());
+            let taken = h.min(left);
+            let (next, error) = dop853::step_with_error(state, taken);
+            if error <= allowed {
+                if !within_flight(next.u) {
+                    return Ok(None);
+                }
+                if taken == left {
+                    return Ok(Some(next));
+                }
+                state = next;
+                left -= taken;
+            }
+            h = taken * step_factor(error, allowed);
+        }
+        Err(OrbitError::StepLimit {
+            steps: self.max_steps,
+            angle: angle - left,
+        })
+    }
+}
+
+/// Returns by how much the next step is longer than one with this error. The estimate falls as h⁸. 0.9 is the usual
+/// allowance for its own error (Hairer, Nørsett & Wanner, §II.4), and the bounds limit the effect of one odd estimate.
+fn step_factor(error: f64, allowed: f64) -> f64 {
+    (0.9 / (error / allowed).sqrt().sqrt().sqrt()).clamp(0.2, 4.0)
 }
 
 /// Reports the events on a step. Returns whether the flight ends on it.

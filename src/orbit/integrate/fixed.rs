@@ -5,7 +5,7 @@ use super::flight::{
     DEFAULT_MAX_STEPS, Departure, Flight, State, Step, acceleration, depart, opposite,
 };
 use crate::orbit::events::{Event, Orbits, TurningPoint, WatchedRadius};
-use crate::orbit::ray::{OrbitError, Ray};
+use crate::orbit::ray::{OrbitError, Ray, within_flight};
 
 /// How a step is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -42,6 +42,18 @@ impl FixedStep {
         }
     }
 
+    /// Returns the length of each step of a ray that starts at `from`.
+    fn step_length(&self, from: State) -> Result<f64, OrbitError> {
+        if self.h.is_nan() || self.h <= 0.0 {
+            return Err(OrbitError::StepLimit {
+                steps: 0,
+                angle: 0.0,
+            });
+        }
+        let e = (from.w * from.w + from.u * from.u * (1.0 - from.u)).sqrt();
+        Ok(self.h.min(1.0 / e))
+    }
+
     #[inline]
     fn fly_by<'a, L: EventLog>(
         &self,
@@ -55,14 +67,7 @@ impl FixedStep {
             Departure::Done(crossings) => return Ok(crossings),
             Departure::Bound(state, crossings) => (state, crossings),
         };
-        if self.h.is_nan() || self.h <= 0.0 {
-            return Err(OrbitError::StepLimit {
-                steps: 0,
-                angle: 0.0,
-            });
-        }
-        let e = (from.w * from.w + from.u * from.u * (1.0 - from.u)).sqrt();
-        let h = self.h.min(1.0 / e);
+        let h = self.step_length(from)?;
         for taken in 0..self.max_steps {
             let to = step(from, h);
             let uneventful = crossings.clear_until(to.u) && from.w * to.w > 0.0;
@@ -100,6 +105,30 @@ impl Flight for FixedStep {
             Scheme::Rk4 => self.fly_by(rk4, pass_cubic, ray, watched, log),
         }
     }
+
+    /// The last step is as much shorter as it has to be.
+    fn fly_for(&self, start: State, angle: f64) -> Result<Option<State>, OrbitError> {
+        let h = self.step_length(start)?;
+        let mut state = start;
+        for taken in 0..self.max_steps {
+            let left = angle - taken as f64 * h;
+            let length = left.min(h);
+            state = match self.scheme {
+                Scheme::Euler => euler(state, length),
+                Scheme::Rk4 => rk4(state, length),
+            };
+            if !within_flight(state.u) {
+                return Ok(None);
+            }
+            if left <= h {
+                return Ok(Some(state));
+            }
+        }
+        Err(OrbitError::StepLimit {
+            steps: self.max_steps,
+            angle: self.max_steps as f64 * h,
+        })
+    }
 }
 
 impl Orbits for FixedStep {
@@ -113,6 +142,10 @@ impl Orbits for FixedStep {
 
     fn first_crossing(&self, ray: Ray, radius: f64) -> Result<Option<f64>, OrbitError> {
         self.first_event(ray, radius)
+    }
+
+    fn u_at_angle(&self, ray: Ray, angle: f64) -> Result<Option<f64>, OrbitError> {
+        self.u_after(ray, angle)
     }
 }
 

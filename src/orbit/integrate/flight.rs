@@ -3,15 +3,11 @@
 use super::crossings::{CrossingSearch, EventLog, MonotonePiece};
 use super::root;
 use crate::orbit::events::{Event, EventKind, TurningPoint, WatchedRadius};
-use crate::orbit::ray::{OrbitError, Ray};
+use crate::orbit::ray::{OrbitError, Ray, STRAIGHT, straight_u_at};
 
 /// The number of steps after which a stepped solution gives up, unless told otherwise. A ray one unit in the last place
 /// from critical winds some 40 radians, which even steps of 0.001 cover in less than half as many.
 pub(super) const DEFAULT_MAX_STEPS: u64 = 100_000;
-
-/// The |du/dφ| from which a ray's path is straight in (φ, u) to the last bit. Between the horizon and infinity
-/// `w² = e² − u²(1 − u)` varies by at most 4/27, and so w by a share of at most 2/(27w²), which is less than 2⁻⁵⁵ here.
-pub(super) const STRAIGHT: f64 = (1_u64 << 26) as f64;
 
 /// A point of the phase plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -162,6 +158,27 @@ pub(super) trait Flight {
             EventKind::Inbound | EventKind::Outbound => Some(event.angle),
             EventKind::End(_) => None,
         }))
+    }
+
+    /// Returns the state after `angle`, which is above 0; `None` where the ray has ended by then.
+    ///
+    /// # Errors
+    /// [`OrbitError::StepLimit`]
+    fn fly_for(&self, start: State, angle: f64) -> Result<Option<State>, OrbitError>;
+
+    /// Implements [`Orbits::u_at_angle`](crate::orbit::Orbits::u_at_angle)
+    fn u_after(&self, ray: Ray, angle: f64) -> Result<Option<f64>, OrbitError> {
+        let (u, w) = (ray.u(), ray.dudphi());
+        if angle == 0.0 {
+            Ok(Some(u))
+        } else if angle.is_nan() || angle < 0.0 {
+            Ok(None)
+        } else if w.abs() >= STRAIGHT {
+            Ok(straight_u_at(u, w, angle))
+        } else {
+            let state = self.fly_for(State { u, w }, angle)?;
+            Ok(state.map(|state| state.u))
+        }
     }
 
     /// Implements [`Orbits::turning_point`](crate::orbit::Orbits::turning_point)
