@@ -5,10 +5,10 @@ use super::tone::DisplayTransform;
 
 /// The 8-bit colours of one light on one display, by the amplitude y.
 ///
-/// 20,000 entries stand at equal distances on an axis that is nearly ln y: the bits of y as an integer. They reach from
-/// the amplitude below which all is black to the one above which nothing changes, so that the distance follows from how
-/// fast the light rises. A code is within 0.6 of the exact one, [`DisplayTransform::encode`] times 255, of which 0.5 is
-/// the rounding.
+/// 20,000 entries (80 kB) stand at equal distances on an axis that is nearly ln y: the bits of y as an integer. They
+/// reach from the amplitude below which all is black to the one above which nothing changes, so that their distance
+/// follows from how fast the light rises. A code is within 0.6 of the exact one, [`DisplayTransform::encode`] times
+/// 255; 0.5 of this is the rounding.
 ///
 /// There is one exception, without a tone ([`Tone::None`]): where light of 1900 K is overexposed five times or more,
 /// its blue enters the gamut there and rises by more than a code within an entry.
@@ -27,26 +27,22 @@ pub struct Palette {
 
 impl Palette {
     const ENTRIES: usize = 20_000;
-    /// So many entries are interpolated where their codes differ by less than a quarter. A bend between them, where a
-    /// colour enters the gamut or its highlights begin, is then missed by a sixteenth of a code at most.
-    const BLOCK: usize = 4;
+    /// So many entries are interpolated where they differ by less than 0.4 codes: most of them, where it is dark, where
+    /// it is nearly white, and where the codes rise slowly between.
+    const BLOCK: usize = 8;
 
     /// Computes the colours of this light on this display.
     pub fn new(light: &RadianceTable, display: &DisplayTransform) -> Self {
-        let values = |bits: u32| display.values(light.rgb(f32::from_bits(bits)));
+        let rgb = |bits: u32| light.rgb(f32::from_bits(bits));
+        let codes = |bits: u32| display.rgb8(rgb(bits));
         let end = light.end().to_bits();
-        let brightest = values(end);
-        let black = |bits: u32| values(bits).iter().all(|value| value * 255.0 < 0.5);
-        let unchanging = |bits: u32| {
-            let mut pairs = values(bits).into_iter().zip(brightest);
-            pairs.all(|(value, end)| (end - value).abs() * 255.0 < 0.4)
-        };
-        let seen = first_that(light.first().to_bits(), end, |bits| !black(bits));
-        let last = end - first_that(0, end - seen, |below| !unchanging(end - below));
+        let brightest = codes(end);
+        let seen = first_that(light.first().to_bits(), end, |bits| codes(bits) != [0; 3]);
+        let last = end - first_that(0, end - seen, |below| codes(end - below) != brightest);
         // One entry before the first colour that is seen, and none beyond the last index.
         let step = (last - seen) / (Self::ENTRIES as u32 - 2) + 1;
         let first = seen - step;
-        let entry = |place: usize| values(first + place as u32 * step + step / 2);
+        let entry = |place: usize| display.values(rgb(first + place as u32 * step + step / 2));
         let mut entries = vec![[0; 4]; Self::ENTRIES];
         let mut start = entry(0);
         for (block, colours) in entries
@@ -57,7 +53,7 @@ impl Palette {
         {
             let place = block * Self::BLOCK;
             let end = entry(place + Self::BLOCK);
-            let flat = (0..3).all(|c| (end[c] - start[c]).abs() * 255.0 < 0.25);
+            let flat = (0..3).all(|c| (end[c] - start[c]).abs() * 255.0 < 0.4);
             for (i, colour) in colours.iter_mut().enumerate() {
                 let [r, g, b] = if flat {
                     let t = i as f32 / Self::BLOCK as f32;
@@ -75,7 +71,7 @@ impl Palette {
         Self {
             first: first as i32,
             scale: (1 << 32) / u64::from(step),
-            brightest: entries[Self::ENTRIES - 1],
+            brightest: [brightest[0], brightest[1], brightest[2], 255],
             entries,
         }
     }
