@@ -115,6 +115,11 @@ impl Isoradials {
         self.spec.union(spec) == Some(self.spec)
     }
 
+    /// Returns what they were built for.
+    pub(super) fn spec(&self) -> &CurveSpec {
+        &self.spec
+    }
+
     /// Returns κ of the critical ray.
     pub fn critical(&self) -> f64 {
         self.critical

@@ -44,6 +44,7 @@
 //! exact edges, and checks that choices made for 8 T break T.
 
 mod builder;
+mod chebyshev;
 mod coarse;
 mod curve_spec;
 mod edge;
@@ -54,6 +55,7 @@ mod outline;
 mod pixel_metric;
 mod quarter_curves;
 mod quarter_turn;
+mod radius_map;
 mod ray_angles;
 mod ray_bounds;
 mod sensitivity;
@@ -63,6 +65,8 @@ pub use curve_spec::CurveSpec;
 pub use edge::{Edge, EdgeError};
 pub use isoradials::{ImageOrder, Isoradials, OmittedOrder};
 pub(crate) use outline::{Boundary, Sector};
+pub use radius_map::RadiusMap;
+pub(crate) use radius_map::{PlaneMeeting, RadiusColumn, RadiusSection};
 pub use ray_bounds::RayBounds;
 pub use sensitivity::sensitivity;
 pub use solve::height_at;
