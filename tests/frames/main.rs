@@ -20,6 +20,7 @@ mod coverage;
 mod coverage_frames;
 mod coverage_rings;
 mod extreme_cameras;
+mod light;
 mod masks;
 mod needs;
 mod outline;
