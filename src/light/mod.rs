@@ -33,11 +33,13 @@ pub mod flux;
 mod palette;
 mod radiance;
 pub mod rec709;
+mod redshift;
 mod sight;
 pub mod srgb;
 mod tone;
 
 pub use palette::Palette;
 pub use radiance::{Radiance, RadianceTable};
+pub use redshift::{AngularMomentum, SightGeometry, emission_cosine, redshift};
 pub use sight::Sight;
 pub use tone::DisplayTransform;

@@ -1,4 +1,5 @@
-//! Draws a frame without curves, by following every pixel's ray: the same picture from any method.
+//! Draws a frame without curves, by following every pixel's ray: the same picture from any method. Tells what a pixel
+//! sees of the disk in the same way.
 
 use core::f64::consts::PI;
 
@@ -6,9 +7,10 @@ use rayon::prelude::*;
 
 use super::WHITE;
 use super::error::{RenderError, blank, check_buffer};
+use crate::light::{Sight, SightGeometry};
 use crate::orbit::integrate::FixedStep;
 use crate::orbit::{Event, EventKind, OrbitError, Orbits, Ray};
-use crate::scene::{Disk, Scene, View};
+use crate::scene::{Disk, PixelRay, Scene, View};
 
 /// Returns the frame's pixels, row by row from the top, drawn on all threads of the current rayon pool. Calls
 /// `row_done` after each row.
@@ -70,19 +72,45 @@ pub fn sees(
     orbits: &impl Orbits,
     (i, j): (u32, u32),
 ) -> Result<bool, OrbitError> {
-    let pixel = view.pixel(i, j);
-    let s = pixel.transverse();
-    // A ray straight at the hole or away from it has no orbit plane, and misses the disk.
-    if s <= 0.0 {
-        return Ok(false);
-    }
-    let start = Ray::new(view.u0(), view.dudphi(pixel))?;
-    let events = orbits.follow(start, &[scene.disk().inner, scene.disk().outer])?;
-    Ok(meets(
-        &events,
-        view.plane_crossing(pixel.ta, s),
-        scene.disk(),
-    ))
+    Ok(disk_crossing(scene.disk(), view, orbits, view.pixel(i, j))?.is_some())
+}
+
+/// Returns what the centre of a pixel (column, row) sees of the disk: its ring, azimuth and redshift where the ray
+/// meets it first, since the disk is opaque. `None` exactly where [`sees`] is false.
+///
+/// # Errors
+/// Returns the method's error if it cannot follow the ray.
+pub fn sight(
+    scene: &Scene,
+    view: &View,
+    orbits: &impl Orbits,
+    (i, j): (u32, u32),
+) -> Result<Option<Sight>, OrbitError> {
+    sight_along(scene, view, orbits, view.pixel(i, j))
+}
+
+/// Returns what the ray of any point of the picture sees of the disk, like [`sight`].
+///
+/// # Errors
+/// Returns the method's error if it cannot follow the ray.
+pub fn sight_along(
+    scene: &Scene,
+    view: &View,
+    orbits: &impl Orbits,
+    pixel: PixelRay,
+) -> Result<Option<Sight>, OrbitError> {
+    let disk = scene.disk();
+    let Some(DiskCrossing { ray, order, angle }) = disk_crossing(disk, view, orbits, pixel)? else {
+        return Ok(None);
+    };
+    let (u_inner, u_outer) = (1.0 / disk.inner, 1.0 / disk.outer);
+    // The crossing lies on the disk; its u may be beyond an edge by the method's error. A ray that has ended by that
+    // error has left over an outer edge that is farther away than it can tell from infinity.
+    let u = orbits
+        .u_at_angle(ray, angle)?
+        .unwrap_or(0.0)
+        .clamp(u_outer, u_inner);
+    Ok(Some(SightGeometry::new(view).sight(pixel, order, u)))
 }
 
 /// Returns whether a pixel (column, row) sees the disk, by steps that end at each crossing of the disk's plane (see
@@ -97,13 +125,42 @@ pub fn sees_in_steps(scene: &Scene, view: &View, method: &FixedStep, (i, j): (u3
     })
 }
 
-/// Returns whether a ray is between the disk's two radii at one of the angles `first + kπ`. `events` are its crossings
-/// of the two radii and its end. The angle 0 does not count: a ray that starts in the plane does not cross it there.
-fn meets(events: &[Event], first: f64, disk: &Disk) -> bool {
-    let crosses_within = |from: f64, to: f64| {
-        let least = if first > 0.0 { 0.0 } else { 1.0 };
+/// Where a ray meets the disk first.
+struct DiskCrossing {
+    ray: Ray,
+    /// The order of the image.
+    order: u32,
+    /// The angle swept.
+    angle: f64,
+}
+
+/// Returns where the ray of a point of the picture meets the disk first.
+fn disk_crossing(
+    disk: &Disk,
+    view: &View,
+    orbits: &impl Orbits,
+    pixel: PixelRay,
+) -> Result<Option<DiskCrossing>, OrbitError> {
+    let s = pixel.transverse();
+    // A ray straight at the hole or away from it has no orbit plane, and misses the disk.
+    if s <= 0.0 {
+        return Ok(None);
+    }
+    let ray = Ray::new(view.u0(), view.dudphi(pixel))?;
+    let events = orbits.follow(ray, &[disk.inner, disk.outer])?;
+    let met = first_met(&events, view.plane_crossing(pixel.ta, s), disk);
+    Ok(met.map(|(order, angle)| DiskCrossing { ray, order, angle }))
+}
+
+/// Returns the first of the angles `first + kπ` at which a ray is between the disk's two radii, and its number among
+/// those angles. `events` are the ray's crossings of the two radii and its end. The angle 0 does not count: a ray that
+/// starts in the plane does not cross it there.
+fn first_met(events: &[Event], first: f64, disk: &Disk) -> Option<(u32, f64)> {
+    let least = if first > 0.0 { 0.0 } else { 1.0 };
+    let crossed_within = |from: f64, to: f64| {
         let k = ((from - first) / PI).ceil().max(least);
-        first + k * PI <= to
+        let angle = first + k * PI;
+        (angle <= to).then_some(((k - least) as u32, angle))
     };
     let enters = |event: &Event| {
         (event.kind == EventKind::Inbound && event.radius == disk.outer)
@@ -117,11 +174,11 @@ fn meets(events: &[Event], first: f64, disk: &Disk) -> bool {
     let mut entered = starts_within.then_some(0.0);
     for event in events {
         if let Some(from) = entered
-            && crosses_within(from, event.angle)
+            && let Some(met) = crossed_within(from, event.angle)
         {
-            return true;
+            return Some(met);
         }
         entered = enters(event).then_some(event.angle);
     }
-    false
+    None
 }

@@ -72,6 +72,9 @@ pub struct View {
     slope_scale: f64,
     n_p: f64,
     n_a: f64,
+    /// n and b̂ in the scene's axes.
+    normal: DVec3,
+    level: DVec3,
     z: Affine,
     ta: Affine,
     tb: Affine,
@@ -140,6 +143,8 @@ impl View {
             slope_scale: u0 * ((radius - 1.0) / radius).sqrt(),
             n_p,
             n_a,
+            normal: direction(disk.normal),
+            level: b,
             z: Affine {
                 at_centre: -f.dot(p),
                 per_x: -right_p,
@@ -176,6 +181,22 @@ impl View {
     /// `n·â = |n × p̂| ≥ 0`; 0 on the disk's axis.
     pub fn n_a(&self) -> f64 {
         self.n_a
+    }
+
+    /// The disk's unit normal n, in the scene's axes.
+    pub fn normal(&self) -> DVec3 {
+        self.normal
+    }
+
+    /// The unit vector `b̂ = p̂ × â` across p̂ and in the disk's plane, in the scene's axes.
+    pub fn level(&self) -> DVec3 {
+        self.level
+    }
+
+    /// `√(1 − u0)`: the rate of the camera's clock, and the ratio of a light's frequency far away to that at the camera.
+    pub fn clock_rate(&self) -> f64 {
+        // 1 − u0 = (r − 1)/r: r − 1 is exact for r < 2, where 1 − u0 would show the rounding of u0.
+        ((self.radius - 1.0) / self.radius).sqrt()
     }
 
     /// `D/t_a`, where `tan φ₁ = N/D` and `N = |n·p̂| s`: it is n·â for the normal, n or −n, that points away from the

@@ -10,6 +10,9 @@ mod quadrature;
 #[path = "../common/tables.rs"]
 mod tables;
 
+#[path = "../program/tools.rs"]
+mod tools;
+
 mod any_scene;
 mod drawn;
 mod methods;
@@ -20,6 +23,8 @@ mod coverage;
 mod coverage_frames;
 mod coverage_rings;
 mod extreme_cameras;
+mod gyoto;
+mod light;
 mod masks;
 mod needs;
 mod outline;
