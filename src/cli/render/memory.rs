@@ -1,6 +1,8 @@
 //! The limit on the memory of frames. The system grants more memory than it has, and kills the process that uses it, so
 //! the limit is checked first.
 
+use std::io;
+
 use bytesize::ByteSize;
 
 use super::super::misuse::misuse;
@@ -31,6 +33,18 @@ pub(super) fn check(allowed: ByteSize, size: ImageSize) -> anyhow::Result<()> {
         size.height,
         ByteSize(needed)
     )))
+}
+
+/// Checks that the system grants so many bytes: an allocation that fails within an encoder ends the process.
+///
+/// # Errors
+/// It does not.
+pub(super) fn grant(bytes: usize) -> io::Result<()> {
+    let granted = Vec::<u8>::new().try_reserve_exact(bytes);
+    granted.map_err(|_| {
+        let problem = "not enough memory to encode the picture; choose a smaller one";
+        io::Error::new(io::ErrorKind::OutOfMemory, problem)
+    })
 }
 
 /// How many frames fit in `allowed`.

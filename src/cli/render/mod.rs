@@ -10,6 +10,7 @@ mod film;
 mod format;
 mod memory;
 mod options;
+mod origin;
 mod output;
 mod plan;
 mod png;

@@ -11,9 +11,11 @@ use super::super::stdio::StdoutError;
 use super::super::writable;
 use super::args::RenderArgs;
 use super::format::Format;
+use super::origin::FrameOrigin;
 use super::output;
-use super::png::{self, FrameOrigin};
+use super::png;
 use super::sequence;
+use crate::render::Pixels;
 use crate::render::needs::Needs;
 use crate::scene::{Animation, Scene};
 
@@ -113,7 +115,9 @@ impl<'a> Plan<'a> {
         match &self.destination {
             Destination::Sequence(pattern) if !self.args.overwrite => {
                 let origin = origin.of_frame(number);
-                sequence::is_finished(&pattern.file(number), self.most_bytes(), &origin)
+                let made =
+                    |file: &[u8]| png::made(file, if self.one_bit() { 1 } else { 8 }, &origin);
+                sequence::is_finished(&pattern.file(number), self.most_bytes(), made)
             }
             _ => false,
         }
@@ -144,8 +148,16 @@ impl<'a> Plan<'a> {
     /// # Errors
     /// Not enough memory.
     pub(super) fn encode(&self, pixels: &[u8], origin: &FrameOrigin) -> io::Result<Vec<u8>> {
-        let size = self.first.image();
-        let one_bit = !self.first.antialias() || !self.args.method.is_table();
-        png::encode(pixels, (size.width, size.height), one_bit, origin)
+        png::encode(
+            Pixels::Grey8(pixels),
+            self.first.image(),
+            self.one_bit(),
+            origin,
+        )
+    }
+
+    /// Whether a pixel is one bit: where edges are hard.
+    fn one_bit(&self) -> bool {
+        !self.first.antialias() || !self.args.method.is_table()
     }
 }

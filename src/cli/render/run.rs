@@ -14,8 +14,8 @@ use super::draw::{DrawnFrame, FrameReport, FrameSource, Workspace};
 use super::film::{Broken, Film};
 use super::format::Format;
 use super::memory;
+use super::origin::FrameOrigin;
 use super::plan::Plan;
-use super::png::FrameOrigin;
 use super::run_stats::RunStats;
 use super::sequence;
 
