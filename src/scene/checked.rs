@@ -94,17 +94,25 @@ impl Scene {
     }
 
     /// The same scene with a shining disk, or with one that only covers (`None`).
-    #[must_use]
-    pub fn with_light(mut self, light: Option<Light>) -> Self {
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for a temperature that is not allowed, and for a disk that no longer has the light of one
+    /// of the scene's layers.
+    pub fn with_light(mut self, light: Option<Light>) -> Result<Self, SceneError> {
+        validate::light(light)?;
+        validate::layers(self.settings.layers, light)?;
         self.light = light;
-        self
+        Ok(self)
     }
 
     /// The same scene with its light multiplied by 2 to the power of `stops`.
-    #[must_use]
-    pub fn with_exposure(mut self, stops: f64) -> Self {
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for an exposure that is not allowed.
+    pub fn with_exposure(mut self, stops: f64) -> Result<Self, SceneError> {
+        validate::exposure(stops)?;
         self.settings.exposure = stops;
-        self
+        Ok(self)
     }
 
     /// The same scene with another tone.
@@ -114,11 +122,23 @@ impl Scene {
         self
     }
 
+    /// The same scene as a PNG picture whose samples have `bits` bits, 8 or 16.
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for another number.
+    pub fn with_bits(mut self, bits: u8) -> Result<Self, SceneError> {
+        self.settings.bits = validate::bits(i64::from(bits))?;
+        Ok(self)
+    }
+
     /// The same scene with these layers of data.
-    #[must_use]
-    pub fn with_layers(mut self, layers: LayerSet) -> Self {
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for a layer that the disk's light does not have.
+    pub fn with_layers(mut self, layers: LayerSet) -> Result<Self, SceneError> {
+        validate::layers(layers, self.light)?;
         self.settings.layers = layers;
-        self
+        Ok(self)
     }
 
     /// The camera.

@@ -1,14 +1,15 @@
 //! A scene's TOML form: names, types and defaults. [`validate`](super::validate) checks the values.
 
-use std::fmt;
-
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 
-use super::checked::Scene;
 use super::error::SceneError;
-use super::values::DEFAULT_TOLERANCE;
+use super::layers::LayerSet;
+use super::validate;
+use super::values::{DEFAULT_TOLERANCE, ImageSettings, Light, Tone};
 use crate::quotation::beginning;
+
+mod write;
 
 /// The whole file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -43,9 +44,27 @@ pub(super) struct DiskTable {
     pub(super) outer: f64,
     #[serde(default = "plus_z", deserialize_with = "three_numbers")]
     pub(super) normal: [f64; 3],
+    #[serde(default, deserialize_with = "light")]
+    pub(super) light: Option<Light>,
 }
 
-/// `[image]`. The sizes are signed so that a negative one gets the same error as a zero.
+/// `[disk.light]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LightTable {
+    model: Option<LightModel>,
+    temperature: Option<f64>,
+}
+
+/// The names of the kinds of [`Light`].
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum LightModel {
+    BlackBody,
+    Bolometric,
+}
+
+/// `[image]`. Sizes and bits are signed so that a negative one gets the same error as a zero.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ImageTable {
@@ -55,6 +74,14 @@ pub(super) struct ImageTable {
     pub(super) antialias: bool,
     #[serde(default = "default_tolerance")]
     pub(super) tolerance: f64,
+    #[serde(default)]
+    pub(super) exposure: f64,
+    #[serde(default)]
+    pub(super) tone: Tone,
+    #[serde(default = "one_byte")]
+    pub(super) bits: i64,
+    #[serde(default, deserialize_with = "layers")]
+    pub(super) layers: LayerSet,
 }
 
 /// How a quantity changes between keyframes.
@@ -141,16 +168,6 @@ impl KeyframeTable {
     }
 }
 
-impl fmt::Display for FromTo {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.from == self.to {
-            write!(f, "{:?}", self.from)
-        } else {
-            write!(f, "[{:?}, {:?}]", self.from, self.to)
-        }
-    }
-}
-
 fn of_film() -> f64 {
     24.0
 }
@@ -161,6 +178,10 @@ fn yes() -> bool {
 
 fn default_tolerance() -> f64 {
     DEFAULT_TOLERANCE
+}
+
+fn one_byte() -> i64 {
+    8
 }
 
 fn plus_z() -> [f64; 3] {
@@ -182,6 +203,31 @@ fn maybe_three_numbers<'de, D: Deserializer<'de>>(source: D) -> Result<Option<[f
     three_numbers(source).map(Some)
 }
 
+/// Reads a disk's light. Errors name what is missing or too much.
+fn light<'de, D: Deserializer<'de>>(source: D) -> Result<Option<Light>, D::Error> {
+    let LightTable { model, temperature } = LightTable::deserialize(source)?;
+    match (model, temperature) {
+        (Some(LightModel::BlackBody), Some(temperature)) => Ok(Light::BlackBody { temperature }),
+        (Some(LightModel::Bolometric), None) => Ok(Light::Bolometric),
+        (None, _) => Err(
+            "disk.light.model is missing; set it to \"blackbody\", with a temperature, or to \"bolometric\"",
+        ),
+        (Some(LightModel::BlackBody), None) => Err(
+            "disk.light.temperature is missing; set the temperature of the hottest ring, in kelvin, such as 7000.0",
+        ),
+        (Some(LightModel::Bolometric), Some(_)) => Err(
+            "disk.light.temperature means nothing for bolometric light; remove it or set model = \"blackbody\"",
+        ),
+    }
+    .map(Some)
+    .map_err(D::Error::custom)
+}
+
+/// Reads the names of layers.
+fn layers<'de, D: Deserializer<'de>>(source: D) -> Result<LayerSet, D::Error> {
+    LayerSet::from_names(Vec::<String>::deserialize(source)?).map_err(D::Error::custom)
+}
+
 impl SceneFile {
     /// Reads the TOML text.
     ///
@@ -190,6 +236,26 @@ impl SceneFile {
     pub(super) fn parse(text: &str) -> Result<Self, SceneError> {
         toml::from_str(text)
             .map_err(|error| SceneError::toml(readable(error.to_string().trim_end())))
+    }
+
+    /// Checks the light and the settings of the pictures.
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for the first value that is not allowed.
+    pub(super) fn settings(&self) -> Result<ImageSettings, SceneError> {
+        let (image, light) = (&self.image, self.disk.light);
+        validate::light(light)?;
+        let settings =
+            validate::image(image.width, image.height, image.antialias, image.tolerance)?;
+        validate::exposure(image.exposure)?;
+        validate::layers(image.layers, light)?;
+        Ok(ImageSettings {
+            exposure: image.exposure,
+            tone: image.tone,
+            bits: validate::bits(image.bits)?,
+            layers: image.layers,
+            ..settings
+        })
     }
 }
 
@@ -201,103 +267,9 @@ fn readable(message: &str) -> String {
             .replace("expected f64", "expected a number")
             .replace("expected i64", "expected a whole number")
             .replace("expected a boolean", "expected true or false")
+            .replace("expected a sequence", "expected a list")
     });
     lines.collect::<Vec<_>>().join("\n")
-}
-
-impl From<&Scene> for SceneFile {
-    fn from(scene: &Scene) -> Self {
-        let (camera, disk) = (scene.camera(), scene.disk());
-        Self {
-            camera: CameraTable {
-                position: Some(camera.position.to_array()),
-                focus: camera.focus.to_array(),
-                up: Some(camera.up.to_array()),
-                fov: camera.fov_degrees,
-            },
-            disk: DiskTable {
-                inner: disk.inner,
-                outer: disk.outer,
-                normal: disk.normal.to_array(),
-            },
-            image: ImageTable {
-                width: i64::from(scene.image().width),
-                height: i64::from(scene.image().height),
-                antialias: scene.antialias(),
-                tolerance: scene.tolerance(),
-            },
-            animation: None,
-        }
-    }
-}
-
-/// The TOML text. It is written by hand because pictures carry its checksum: no version of a serialiser may change it.
-/// `{:?}` of a finite f64 is valid TOML, and the shortest decimal that reads back to the same bits.
-impl fmt::Display for SceneFile {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            camera,
-            disk,
-            image,
-            animation,
-        } = self;
-        writeln!(f, "[camera]")?;
-        line(f, "position", camera.position)?;
-        writeln!(f, "focus = {:?}", camera.focus)?;
-        line(f, "up", camera.up)?;
-        writeln!(f, "fov = {:?}", camera.fov)?;
-        writeln!(f, "\n[disk]")?;
-        writeln!(f, "inner = {:?}", disk.inner)?;
-        writeln!(f, "outer = {:?}", disk.outer)?;
-        writeln!(f, "normal = {:?}", disk.normal)?;
-        writeln!(f, "\n[image]")?;
-        writeln!(f, "width = {}", image.width)?;
-        writeln!(f, "height = {}", image.height)?;
-        writeln!(f, "antialias = {}", image.antialias)?;
-        writeln!(f, "tolerance = {:?}", image.tolerance)?;
-        animation
-            .as_ref()
-            .map_or(Ok(()), |animation| write!(f, "\n{animation}"))
-    }
-}
-
-impl fmt::Display for AnimationTable {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "[animation]")?;
-        writeln!(f, "frames = {}", self.frames)?;
-        writeln!(f, "fps = {:?}", self.fps)?;
-        let interpolation = match self.interpolation {
-            Interpolation::Smooth => "smooth",
-            Interpolation::Linear => "linear",
-        };
-        writeln!(f, "interpolation = \"{interpolation}\"")?;
-        if let Some(orbit) = &self.orbit {
-            let OrbitTable {
-                radius,
-                inclination,
-                azimuth,
-            } = orbit;
-            writeln!(
-                f,
-                "orbit = {{ radius = {radius}, inclination = {inclination}, azimuth = {azimuth} }}"
-            )?;
-        }
-        for keyframe in &self.keyframe {
-            writeln!(f, "\n[[animation.keyframe]]")?;
-            writeln!(f, "frame = {}", keyframe.frame)?;
-            line(f, "position", keyframe.position)?;
-            line(f, "focus", keyframe.focus)?;
-            line(f, "up", keyframe.up)?;
-            line(f, "fov", keyframe.fov)?;
-            line(f, "normal", keyframe.normal)?;
-        }
-        Ok(())
-    }
-}
-
-/// Writes the line of a key that has a value.
-fn line(f: &mut fmt::Formatter<'_>, key: &str, value: Option<impl fmt::Debug>) -> fmt::Result {
-    value.map_or(Ok(()), |value| writeln!(f, "{key} = {value:?}"))
 }
 
 #[cfg(test)]
@@ -357,16 +329,5 @@ mod tests {
         );
         let text = message(&SHORTEST.replace("fov = 40", "fov = \"wide\""));
         assert!(text.contains("expected a number"), "{text}");
-    }
-
-    #[test]
-    fn written_toml_reads_back_to_the_same_bits() {
-        let mut file = SceneFile::parse(SHORTEST).unwrap();
-        file.camera.position = Some([0.1 + 0.2, -1e-300, 123_456_789_012_345.0]);
-        file.camera.up = Some([5e-324, f64::MAX, -0.0]);
-        file.camera.fov = 1e-9;
-        let back = SceneFile::parse(&file.to_string()).unwrap();
-        assert_eq!(back, file);
-        assert!(back.camera.up.is_some_and(|up| up[2].is_sign_negative()));
     }
 }

@@ -2,6 +2,12 @@
 
 use core::fmt;
 
+use super::error::SceneError;
+use crate::quotation::beginning;
+
+/// The most characters of an unknown name that an error quotes.
+const LONGEST_NAME: usize = 40;
+
 /// One kind of data of every pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Layer {
@@ -88,6 +94,32 @@ impl LayerSet {
         Self(self.0 | 1 << layer as u16)
     }
 
+    /// The layers of these names.
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for a name that [`Layer::NAMED`] does not have, and for one that comes twice.
+    pub fn from_names<T: AsRef<str>>(
+        names: impl IntoIterator<Item = T>,
+    ) -> Result<Self, SceneError> {
+        names.into_iter().try_fold(Self::default(), |set, name| {
+            let name = name.as_ref();
+            let wrong =
+                |reason| SceneError::value("image.layers", beginning(name, LONGEST_NAME), reason);
+            let layer = Layer::named(name).ok_or_else(|| {
+                let known = Layer::NAMED.map(Layer::name).join(", ");
+                wrong(format!(
+                    "there is no layer of this name; the layers are {known}"
+                ))
+            })?;
+            if set.has(layer) {
+                return Err(wrong(
+                    "this layer is named twice; remove one of them".into(),
+                ));
+            }
+            Ok(set.with(layer))
+        })
+    }
+
     /// Whether a layer is in it.
     pub fn has(self, layer: Layer) -> bool {
         self.0 >> layer as u16 & 1 == 1
@@ -116,5 +148,40 @@ impl fmt::Display for LayerSet {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let names: Vec<&str> = self.iter().map(Layer::name).collect();
         write!(f, "{names:?}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_named_layer_is_found_by_its_name_and_written_as_toml() {
+        let names = Layer::NAMED.map(Layer::name);
+        let all = LayerSet::from_names(names).unwrap();
+        assert!(all.iter().eq(Layer::NAMED));
+        assert_eq!(all.to_string(), format!("{names:?}"));
+        assert_eq!(
+            LayerSet::from_names(["redshift", "radius"])
+                .unwrap()
+                .to_string(),
+            r#"["radius", "redshift"]"#
+        );
+        assert!(LayerSet::from_names([""; 0]).unwrap().is_empty());
+    }
+
+    #[test]
+    fn unknown_and_repeated_names_are_refused() {
+        for (names, word) in [
+            (["radius", "alpha"], "alpha"),
+            (["", "order"], "redshift"),
+            (["order"; 2], "twice"),
+        ] {
+            let message = LayerSet::from_names(names).unwrap_err().to_string();
+            assert!(
+                message.starts_with("image.layers = \"") && message.contains(word),
+                "{message}"
+            );
+        }
     }
 }

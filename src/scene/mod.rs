@@ -16,15 +16,25 @@
 //! outer  = 12.0                      # required; > inner
 //! normal = [0.0, 0.0, 1.0]           # default: +z
 //!
+//! [disk.light]                       # default: none, the picture is a mask
+//! model = "blackbody"                # required; or "bolometric", grey: all wavelengths together
+//! temperature = 7000.0               # of the hottest ring, kelvin; 100 to 1e9; required for black bodies only
+//!
 //! [image]
 //! width  = 1920                      # required
 //! height = 1080                      # required
 //! antialias = true                   # default; false: each pixel is what its centre sees, 255 or 0
 //! tolerance = 0.001                  # default; an edge's largest error, in pixels; 0 < tolerance ≤ 1
+//! exposure = 0.0                     # default; stops: pictures show light times 2 to this power; -100 to 100
+//! tone = "neutral"                   # default; highlights roll off towards white; "none": they are clipped
+//! bits = 8                           # default; or 16, of a PNG picture's samples
+//! layers = ["radius", "redshift"]    # default: none; the data in .exr and .npz files
 //! ```
 //!
-//! Lengths are in Schwarzschild radii. Directions have any length but zero. A moving scene has one more table,
-//! `[animation]`, which [`animation`] describes; as a [`Scene`] it is its first frame.
+//! Lengths are in Schwarzschild radii. Directions have any length but zero. The layers are `coverage`, `order`,
+//! `radius`, `azimuth`, `redshift`, `emission_cosine`, `temperature` and `colour` ([`Layer`]); `colour` needs
+//! `[disk.light]`, `temperature` needs black bodies. A moving scene has one more table, `[animation]`, which
+//! [`animation`] describes; as a [`Scene`] it is its first frame. Light, exposure and tone are those of the whole film.
 
 pub mod animation;
 mod builtin;
@@ -44,8 +54,8 @@ pub use checked::Scene;
 pub use error::SceneError;
 pub use layers::{Layer, LayerSet};
 pub use validate::{
-    FARTHEST_CAMERA, HORIZON_RADIUS, ISCO_RADIUS, MAX_IMAGE_SIDE, MAX_TOLERANCE, NARROWEST_FOV,
-    WIDEST_DISK,
+    FARTHEST_CAMERA, HORIZON_RADIUS, ISCO_RADIUS, MAX_EXPOSURE, MAX_IMAGE_SIDE, MAX_TEMPERATURE,
+    MAX_TOLERANCE, MIN_TEMPERATURE, NARROWEST_FOV, WIDEST_DISK,
 };
 pub use values::{Camera, DEFAULT_TOLERANCE, Disk, ImageSize, Light, Tone};
 pub use view::{Affine, PixelRay, View};

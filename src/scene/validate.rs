@@ -6,6 +6,11 @@ use super::error::SceneError;
 use super::values::{Camera, Disk, ImageSettings, ImageSize};
 use super::vector::{cosine, direction, norm};
 
+mod light;
+
+pub use light::{MAX_EXPOSURE, MAX_TEMPERATURE, MIN_TEMPERATURE};
+pub(super) use light::{bits, exposure, layers, light};
+
 /// The horizon's radius, in Schwarzschild radii. A camera stands outside it.
 pub const HORIZON_RADIUS: f64 = 1.0;
 

@@ -1,6 +1,7 @@
 //! What a scene is made of: a camera, a disk and a picture's size.
 
 use glam::DVec3;
+use serde::Deserialize;
 
 use super::layers::LayerSet;
 
@@ -87,7 +88,8 @@ pub enum Light {
 }
 
 /// How bright light becomes values of a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Tone {
     /// Highlights roll off towards white.
     #[default]

@@ -33,6 +33,7 @@ mod direction;
 mod orbit;
 mod position;
 mod rate;
+mod settings;
 mod track;
 
 use glam::DVec3;
@@ -41,7 +42,7 @@ use super::checked::Scene;
 use super::error::SceneError;
 use super::file::{Interpolation, KeyframeTable, SceneFile};
 use super::validate;
-use super::values::{Camera, Disk, ImageSettings, ImageSize};
+use super::values::{Camera, Disk, ImageSettings};
 use super::vector::cosine;
 use direction::Directions;
 use orbit::{CameraPlace, OrbitPath};
@@ -82,7 +83,7 @@ impl Animation {
     /// # Errors
     /// [`SceneError`] for what is wrong with every frame; in a still scene, for all that is wrong.
     pub(super) fn new(mut file: SceneFile) -> Result<Self, SceneError> {
-        let settings = settings(&file)?;
+        let settings = file.settings()?;
         let table = file.animation.take();
         let (frames, rate) = match &table {
             Some(table) => (frames(table.frames)?, Rate::new(table.fps)?),
@@ -169,11 +170,6 @@ impl Animation {
         self.rate
     }
 
-    /// The size of every frame.
-    pub fn image(&self) -> ImageSize {
-        self.settings.size
-    }
-
     /// Whether the scene has no `[animation]`: it has one frame then.
     pub fn is_still(&self) -> bool {
         self.file.animation.is_none()
@@ -211,13 +207,15 @@ impl Animation {
             outer: self.outer,
             normal: self.normal.at(time),
         };
-        Scene::at_radius(camera, radius, disk, None, self.settings).map_err(|error| {
-            if self.is_still() {
-                error
-            } else {
-                error.in_frame(number)
-            }
-        })
+        Scene::at_radius(camera, radius, disk, self.file.disk.light, self.settings).map_err(
+            |error| {
+                if self.is_still() {
+                    error
+                } else {
+                    error.in_frame(number)
+                }
+            },
+        )
     }
 
     /// Checks frame `number`, and that the camera does not pass through the disk on its way to the next frame.
@@ -255,48 +253,10 @@ impl Animation {
         Ok(scene)
     }
 
-    /// The same animation as pictures of another size; the vertical field of view stays.
-    ///
-    /// # Errors
-    /// [`SceneError::Value`] for a size that is not allowed.
-    pub fn with_size(mut self, width: u32, height: u32) -> Result<Self, SceneError> {
-        (self.file.image.width, self.file.image.height) = (i64::from(width), i64::from(height));
-        self.with_settings()
-    }
-
-    /// The same animation with its edges right to `pixels`.
-    ///
-    /// # Errors
-    /// [`SceneError::Value`] for a tolerance that is not allowed.
-    pub fn with_tolerance(mut self, pixels: f64) -> Result<Self, SceneError> {
-        self.file.image.tolerance = pixels;
-        self.with_settings()
-    }
-
-    /// The same animation with smooth edges, or with hard ones.
-    ///
-    /// # Errors
-    /// None that the animation does not have already.
-    pub fn with_antialias(mut self, antialias: bool) -> Result<Self, SceneError> {
-        self.file.image.antialias = antialias;
-        self.with_settings()
-    }
-
-    fn with_settings(mut self) -> Result<Self, SceneError> {
-        self.settings = settings(&self.file)?;
-        Ok(self)
-    }
-
     /// The animation's TOML form, with every key that has a value. Two animations are the same if their forms are.
     pub fn to_toml(&self) -> String {
         self.file.to_string()
     }
-}
-
-/// Checks the settings of the pictures.
-fn settings(file: &SceneFile) -> Result<ImageSettings, SceneError> {
-    let image = &file.image;
-    validate::image(image.width, image.height, image.antialias, image.tolerance)
 }
 
 /// Checks the number of frames.

@@ -1,0 +1,105 @@
+//! What all frames of an animation have in common: size, edges, light and how it is shown.
+
+use super::Animation;
+use crate::scene::error::SceneError;
+use crate::scene::layers::LayerSet;
+use crate::scene::values::{ImageSize, Light, Tone};
+
+impl Animation {
+    /// The size of every frame.
+    pub fn image(&self) -> ImageSize {
+        self.settings.size
+    }
+
+    /// The light of the disk; `None` where the disk only covers.
+    pub fn light(&self) -> Option<Light> {
+        self.file.disk.light
+    }
+
+    /// The bits of a PNG picture's samples, 8 or 16.
+    pub fn bits(&self) -> u8 {
+        self.settings.bits
+    }
+
+    /// The layers of data that the animation names.
+    pub fn layers(&self) -> LayerSet {
+        self.settings.layers
+    }
+
+    /// The same animation as pictures of another size; the vertical field of view stays.
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for a size that is not allowed.
+    pub fn with_size(mut self, width: u32, height: u32) -> Result<Self, SceneError> {
+        (self.file.image.width, self.file.image.height) = (i64::from(width), i64::from(height));
+        self.with_settings()
+    }
+
+    /// The same animation with its edges right to `pixels`.
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for a tolerance that is not allowed.
+    pub fn with_tolerance(mut self, pixels: f64) -> Result<Self, SceneError> {
+        self.file.image.tolerance = pixels;
+        self.with_settings()
+    }
+
+    /// The same animation with smooth edges, or with hard ones.
+    ///
+    /// # Errors
+    /// None that the animation does not have already.
+    pub fn with_antialias(mut self, antialias: bool) -> Result<Self, SceneError> {
+        self.file.image.antialias = antialias;
+        self.with_settings()
+    }
+
+    /// The same animation with a shining disk, or with one that only covers (`None`).
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for a temperature that is not allowed, and for a disk that no longer has the light of one
+    /// of the layers.
+    pub fn with_light(mut self, light: Option<Light>) -> Result<Self, SceneError> {
+        self.file.disk.light = light;
+        self.with_settings()
+    }
+
+    /// The same animation with its light multiplied by 2 to the power of `stops`, in every frame.
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for an exposure that is not allowed.
+    pub fn with_exposure(mut self, stops: f64) -> Result<Self, SceneError> {
+        self.file.image.exposure = stops;
+        self.with_settings()
+    }
+
+    /// The same animation with another tone.
+    #[must_use]
+    pub fn with_tone(mut self, tone: Tone) -> Self {
+        self.file.image.tone = tone;
+        self.settings.tone = tone;
+        self
+    }
+
+    /// The same animation as PNG pictures whose samples have `bits` bits, 8 or 16.
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for another number.
+    pub fn with_bits(mut self, bits: u8) -> Result<Self, SceneError> {
+        self.file.image.bits = i64::from(bits);
+        self.with_settings()
+    }
+
+    /// The same animation with these layers of data.
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for a layer that the disk's light does not have.
+    pub fn with_layers(mut self, layers: LayerSet) -> Result<Self, SceneError> {
+        self.file.image.layers = layers;
+        self.with_settings()
+    }
+
+    fn with_settings(mut self) -> Result<Self, SceneError> {
+        self.settings = self.file.settings()?;
+        Ok(self)
+    }
+}
