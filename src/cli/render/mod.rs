@@ -6,9 +6,11 @@
 mod args;
 mod draw;
 mod explain;
+mod exr;
 mod film;
 mod format;
 mod memory;
+mod npz;
 mod options;
 mod origin;
 mod output;
