@@ -7,7 +7,9 @@ mod args;
 mod draw;
 mod explain;
 mod exr;
+mod ffmpeg;
 mod film;
+mod form;
 mod format;
 mod memory;
 mod npz;
@@ -20,6 +22,7 @@ mod run;
 mod run_stats;
 mod sequence;
 mod summary;
+mod y4m;
 
 use std::io::{self, Write};
 
