@@ -100,6 +100,11 @@ impl Unfinished {
         self.temporary.as_file_mut()
     }
 
+    /// The name under which the file is written.
+    pub fn path(&self) -> &Path {
+        self.temporary.path()
+    }
+
     /// Syncs the content to the disk, and gives the file its name.
     ///
     /// # Errors

@@ -52,7 +52,7 @@ Examples:
   darkness render                            the scene `classic`, as classic.png
   darkness render edge-on --size 3840x2160 -o large.png
   darkness render orbit -o 'out/f_####.png'  an animation, a file for each frame
-  darkness render orbit -o - --format y4m | ffmpeg -i - orbit.mp4
+  darkness render orbit -o orbit.mp4         a film, by ffmpeg
   darkness scene classic > mine.toml         a scene to start from
   darkness render mine.toml
   darkness table fine                        the most accurate table

@@ -45,7 +45,7 @@ mod renderer;
 mod scene_frame;
 
 pub use error::RenderError;
-pub use planes::{Pixels, Plane};
+pub use planes::{Form, Pixels, Plane};
 pub use renderer::Renderer;
 pub use scene_frame::FrameReport;
 

@@ -13,7 +13,7 @@ use super::format::Format;
 use super::memory;
 use crate::scene::{DEFAULT_SCENE, ImageSize};
 
-/// Render a scene as a PNG picture, or its animation as numbered PNG pictures or a film
+/// Render a scene as a picture or as data, or its animation as numbered files or a film
 ///
 /// The program takes the smallest table, and the fewest orders and nodes of the image's curves, that keep every edge
 /// within the scene's tolerance; --explain prints them.
@@ -29,9 +29,9 @@ pub(in crate::cli) struct RenderArgs {
     /// A scene's TOML file, or the name of a built-in scene (`darkness scene` lists them)
     #[arg(value_name = "SCENE", default_value = DEFAULT_SCENE)]
     pub(super) scene: PathBuf,
-    /// The output: a .png file, or - for the standard output. For an animation: a name with #### or %04d in place of
-    /// the number, or a .y4m or .raw file [default: the scene's name with .png, or with _####.png for an animation, in
-    /// the current folder]
+    /// The output: a .png, .exr or .npz file, or - for the standard output. For an animation: such a name with #### or
+    /// %04d in place of the number, or a film: .y4m, .raw, or by ffmpeg .mp4, .mov, .mkv or .webm [default: the scene's
+    /// name with .png, with .exr if it names layers, with _#### for an animation, in the current folder]
     #[arg(short, long, value_name = "OUT")]
     pub(super) output: Option<PathBuf>,
     /// The format, where the extension does not name it
@@ -59,6 +59,16 @@ pub(in crate::cli) struct RenderArgs {
     /// --method table draws smooth edges [default: the scene's]
     #[arg(long, value_name = "true|false", action = clap::ArgAction::Set)]
     pub(super) antialias: Option<bool>,
+    /// The layers of a .exr or .npz file, with commas: coverage, order, radius, azimuth, redshift, emission_cosine,
+    /// temperature, colour [default: the scene's; else coverage, and colour where there is light]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub(super) layers: Option<Vec<String>>,
+    /// The exposure of light in pictures and films, in stops: each doubles it [default: the scene's]
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true)]
+    pub(super) exposure: Option<f64>,
+    /// The bits of a PNG picture's samples: 8 or 16 [default: the scene's; 1 for masks with hard edges]
+    #[arg(long, value_name = "8|16", value_parser = bits)]
+    pub(super) bits: Option<u8>,
     /// Print the time of each part of the work: curves, render, encode, write; for one picture also culling and edges
     #[arg(long, conflicts_with_all = ["explain", "dry_run"])]
     pub(super) timings: bool,
@@ -68,13 +78,19 @@ pub(in crate::cli) struct RenderArgs {
     /// Fail where the table is missing, instead of making it: for one of many workers
     #[arg(long)]
     pub(super) require_table: bool,
-    /// The most memory for frames, such as 16GiB: two bytes for each pixel of the frames that are drawn at a time
+    /// The most memory for frames, such as 16GiB: two bytes for each pixel of the masks that are drawn at a time, six for
+    /// 8-bit colour, twelve for 16-bit colour, eight for each number of a layer
     #[arg(long, value_name = "SIZE", default_value = memory::DEFAULT, value_parser = memory::parse)]
     pub(super) max_memory: ByteSize,
     #[command(flatten)]
     pub(super) method: MethodArgs,
     #[command(flatten)]
     pub(super) threads: ThreadArgs,
+}
+
+fn bits(text: &str) -> Result<u8, String> {
+    let bits = text.parse().ok().filter(|bits| [8, 16].contains(bits));
+    bits.ok_or_else(|| "a sample has 8 or 16 bits".into())
 }
 
 fn size(text: &str) -> Result<ImageSize, String> {

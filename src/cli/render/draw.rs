@@ -3,15 +3,24 @@
 use super::super::method::Method;
 use crate::isoradial::Isoradials;
 use crate::orbit::exact::Exact;
-pub(super) use crate::render::FrameReport;
-pub(super) use crate::render::batch::DrawnFrame;
 use crate::render::batch::{self, Curved, FrameError, Frames, RayByRay, Sharing};
-pub(super) use crate::render::frame::Workspace;
+use crate::render::frame::Workspace;
 use crate::render::needs::Needs;
+pub(super) use crate::render::{Form, FrameReport, Pixels};
 use crate::scene::{Animation, Scene, View};
 
 /// Draws the frames of an animation by some method.
 pub(super) struct FrameSource<'a>(&'a dyn Frames);
+
+/// A frame of a run: drawn, or failed.
+pub(super) struct DrawnFrame<'a> {
+    /// Its number in the animation.
+    pub(super) number: u32,
+    /// The number of frames that were begun before it.
+    pub(super) place: u64,
+    /// Its pixels.
+    pub(super) pixels: Result<(Pixels<'a>, FrameReport), FrameError>,
+}
 
 impl FrameSource<'_> {
     /// Calls `body` with the frames of `animation`. Methods that follow each pixel's ray call `row_done` after each
@@ -32,19 +41,6 @@ impl FrameSource<'_> {
         }
     }
 
-    /// Draws one frame into `pixels`, row by row from the top, on all threads.
-    ///
-    /// # Errors
-    /// [`FrameError`]
-    pub(super) fn draw_one(
-        &self,
-        number: u32,
-        workspace: &mut Workspace,
-        pixels: &mut Vec<u8>,
-    ) -> Result<FrameReport, FrameError> {
-        self.0.draw(number, true, workspace, pixels)
-    }
-
     /// Draws the frames `numbers`, about `count`, at most `at_a_time` side by side. Frames that are not `wanted` are
     /// skipped; `done` takes each drawn frame, from several threads and in any order.
     ///
@@ -59,7 +55,14 @@ impl FrameSource<'_> {
         done: impl Fn(DrawnFrame<'_>) -> Result<(), E> + Sync,
     ) -> Result<(), E> {
         let sharing = Sharing::fastest(count, at_a_time);
-        batch::draw(self, numbers, sharing, wanted, done)
+        batch::draw(self, numbers, sharing, wanted, |drawn| {
+            let grey = |(pixels, report)| (Pixels::Grey8(pixels), report);
+            done(DrawnFrame {
+                number: drawn.number,
+                place: drawn.place,
+                pixels: drawn.pixels.map(grey),
+            })
+        })
     }
 }
 
@@ -72,6 +75,17 @@ impl Frames for FrameSource<'_> {
         pixels: &mut Vec<u8>,
     ) -> Result<FrameReport, FrameError> {
         self.0.draw(number, on_all_threads, workspace, pixels)
+    }
+}
+
+/// Checks that frames can be drawn in a form.
+///
+/// # Errors
+/// They cannot.
+pub(super) fn check(form: Form) -> anyhow::Result<()> {
+    match form {
+        Form::Grey8 => Ok(()),
+        _ => anyhow::bail!("only masks of 8 bits can be drawn, as .png, .y4m or .raw"),
     }
 }
 

@@ -4,46 +4,78 @@ use std::path::Path;
 
 use clap::ValueEnum;
 
-use crate::scene::ImageSize;
-
-/// What stands before each frame of a YUV4MPEG2 film.
-pub(super) const Y4M_FRAME: &[u8] = b"FRAME\n";
+use super::super::destination::has_extension;
 
 /// What is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Format {
-    /// A grey PNG picture for each frame: 8 bits a pixel, 1 bit where edges are hard
+    /// A PNG picture for each frame: grey for masks, sRGB for light; 8 or 16 bits a sample, 1 where a mask's edges are
+    /// hard
     Png,
-    /// A film of all frames, YUV4MPEG2, grey
+    /// An OpenEXR file for each frame: linear light and layers of data, as 32-bit floats
+    Exr,
+    /// A NumPy archive for each frame: an array for each layer
+    Npz,
+    /// A film of all frames, YUV4MPEG2: 4:2:0, BT.709, limited range
     Y4m,
-    /// The bytes of all frames, one a pixel, row by row
+    /// A film of masks, YUV4MPEG2: grey, full range
+    #[value(name = "y4m-gray")]
+    Y4mGray,
+    /// The samples of all frames, row by row: a byte of grey, or three of red, green and blue
     Raw,
+    /// A film of all frames, H.264, made by ffmpeg
+    Mp4,
+    /// The same in a QuickTime file
+    Mov,
+    /// The same in a Matroska file
+    Mkv,
+    /// A film of all frames, VP9, made by ffmpeg
+    Webm,
 }
 
 impl Format {
     /// The extensions of all formats, in words.
-    pub(super) const EXTENSIONS: &str = ".png, .y4m or .raw";
+    pub(super) const EXTENSIONS: &str = ".png, .exr, .npz, .y4m, .raw, .mp4, .mov, .mkv or .webm";
 
     /// The format of a path's extension, [`Self::Png`] for any other.
     pub(super) fn of(path: &Path) -> Self {
-        let extension = path.extension().unwrap_or_default();
-        if extension.eq_ignore_ascii_case("y4m") {
-            Self::Y4m
-        } else if extension.eq_ignore_ascii_case("raw") {
-            Self::Raw
-        } else {
-            Self::Png
+        let formats = Self::value_variants().iter().copied();
+        let mut named = formats.filter(|format| has_extension(path, format.extension()));
+        named.next().unwrap_or(Self::Png)
+    }
+
+    /// The extension of its files.
+    pub(super) fn extension(self) -> &'static str {
+        match self {
+            Self::Png => "png",
+            Self::Exr => "exr",
+            Self::Npz => "npz",
+            Self::Y4m | Self::Y4mGray => "y4m",
+            Self::Raw => "raw",
+            Self::Mp4 => "mp4",
+            Self::Mov => "mov",
+            Self::Mkv => "mkv",
+            Self::Webm => "webm",
         }
     }
 
-    /// The bytes of a film of `frames` frames.
-    pub(super) fn film_bytes(self, size: ImageSize, frames: u64) -> u64 {
-        let pixels = u64::from(size.width) * u64::from(size.height);
-        let mark = if self == Self::Y4m {
-            Y4M_FRAME.len()
-        } else {
-            0
-        };
-        frames.saturating_mul(pixels + mark as u64)
+    /// Whether all frames go into one file.
+    pub(super) fn is_film(self) -> bool {
+        !matches!(self, Self::Png | Self::Exr | Self::Npz)
+    }
+
+    /// Whether a file holds layers of data.
+    pub(super) fn has_layers(self) -> bool {
+        matches!(self, Self::Exr | Self::Npz)
+    }
+
+    /// Whether ffmpeg makes the file.
+    pub(super) fn needs_ffmpeg(self) -> bool {
+        matches!(self, Self::Mp4 | Self::Mov | Self::Mkv | Self::Webm)
+    }
+
+    /// Whether four pixels share one sample of colour.
+    pub(super) fn shares_chroma(self) -> bool {
+        self == Self::Y4m || self.needs_ffmpeg()
     }
 }

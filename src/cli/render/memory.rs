@@ -1,9 +1,12 @@
 //! The limit on the memory of frames. The system grants more memory than it has, and kills the process that uses it, so
 //! the limit is checked first.
 
+use std::io;
+
 use bytesize::ByteSize;
 
 use super::super::misuse::misuse;
+use crate::render::Form;
 use crate::scene::ImageSize;
 
 /// The default of `--max-memory`.
@@ -19,8 +22,8 @@ pub(super) fn parse(text: &str) -> Result<ByteSize, String> {
 ///
 /// # Errors
 /// It does not.
-pub(super) fn check(allowed: ByteSize, size: ImageSize) -> anyhow::Result<()> {
-    let needed = of_frame(size);
+pub(super) fn check(allowed: ByteSize, size: ImageSize, form: Form) -> anyhow::Result<()> {
+    let needed = of_frame(size, form);
     if needed <= allowed.as_u64() {
         return Ok(());
     }
@@ -33,13 +36,25 @@ pub(super) fn check(allowed: ByteSize, size: ImageSize) -> anyhow::Result<()> {
     )))
 }
 
-/// How many frames fit in `allowed`.
-pub(super) fn frames_in(allowed: ByteSize, size: ImageSize) -> u64 {
-    allowed.as_u64() / of_frame(size)
+/// Checks that the system grants so many bytes: an allocation that fails within an encoder ends the process.
+///
+/// # Errors
+/// It does not.
+pub(super) fn grant(bytes: usize) -> io::Result<()> {
+    let granted = Vec::<u8>::new().try_reserve_exact(bytes);
+    granted.map_err(|_| {
+        let problem = "not enough memory to encode the picture; choose a smaller one";
+        io::Error::new(io::ErrorKind::OutOfMemory, problem)
+    })
 }
 
-/// The memory of a frame, in bytes, at least 1: two bytes a pixel, its grey and, generously, its share of the PNG file.
-fn of_frame(size: ImageSize) -> u64 {
+/// How many frames fit in `allowed`.
+pub(super) fn frames_in(allowed: ByteSize, size: ImageSize, form: Form) -> u64 {
+    allowed.as_u64() / of_frame(size, form)
+}
+
+/// The memory of a frame, in bytes, at least 1: its pixels and, generously, the file that they become.
+fn of_frame(size: ImageSize, form: Form) -> u64 {
     let pixels = u64::from(size.width) * u64::from(size.height);
-    pixels.saturating_mul(2).max(1)
+    pixels.saturating_mul(2 * form.bytes() as u64).max(1)
 }

@@ -6,10 +6,15 @@
 mod args;
 mod draw;
 mod explain;
+mod exr;
+mod ffmpeg;
 mod film;
+mod form;
 mod format;
 mod memory;
+mod npz;
 mod options;
+mod origin;
 mod output;
 mod plan;
 mod png;
@@ -17,6 +22,7 @@ mod run;
 mod run_stats;
 mod sequence;
 mod summary;
+mod y4m;
 
 use std::io::{self, Write};
 

@@ -6,7 +6,8 @@ use super::super::misuse::misuse;
 use super::super::progress::Report;
 use super::args::RenderArgs;
 use super::memory;
-use crate::scene::{Animation, ImageSize, SceneError};
+use crate::render::Form;
+use crate::scene::{Animation, ImageSize, LayerSet, SceneError};
 
 /// The scene, with what the options change of it.
 ///
@@ -26,7 +27,7 @@ pub(super) fn animation(args: &RenderArgs) -> anyhow::Result<Animation> {
     }
     let mut animation = Animation::load(&args.scene)?;
     if let Some(size) = args.size {
-        memory::check(args.max_memory, size)?;
+        memory::check(args.max_memory, size, Form::Grey8)?;
         let ImageSize { width, height } = size;
         let sized = animation.with_size(width, height);
         animation = sized.map_err(|error| misuse(format!("--size {width}x{height}: {error}")))?;
@@ -38,7 +39,24 @@ pub(super) fn animation(args: &RenderArgs) -> anyhow::Result<Animation> {
         let right = animation.with_tolerance(pixels);
         animation = right.map_err(|error| misuse(format!("--tolerance {pixels}: {error}")))?;
     }
-    memory::check(args.max_memory, animation.image())?;
+    if let Some(names) = &args.layers {
+        let layers = LayerSet::from_names(names).and_then(|layers| animation.with_layers(layers));
+        animation = layers.map_err(|error| misuse(format!("--layers: {error}")))?;
+    }
+    if let Some(bits) = args.bits {
+        animation = animation.with_bits(bits)?;
+    }
+    if let Some(stops) = args.exposure {
+        if animation.light().is_none() {
+            return Err(misuse(
+                "--exposure changes the light of a disk, and this scene's has none; give it a [disk.light], or leave \
+                 --exposure out",
+            ));
+        }
+        let exposed = animation.with_exposure(stops);
+        animation = exposed.map_err(|error| misuse(format!("--exposure {stops}: {error}")))?;
+    }
+    memory::check(args.max_memory, animation.image(), Form::Grey8)?;
     Ok(animation)
 }
 

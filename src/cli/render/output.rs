@@ -42,14 +42,23 @@ pub(super) fn checked(
         )));
     }
     let format = args.format.unwrap_or_else(|| Format::of(&path));
-    let destination = match format {
-        Format::Png => of_pictures(path, args, animation, count)?,
-        Format::Y4m | Format::Raw => of_film(path, args.dry_run)?,
+    let destination = if format.is_film() {
+        of_film(path, format, args.dry_run)?
+    } else {
+        of_pictures(path, format, args, animation, count)?
     };
     Ok((format, destination))
 }
 
-fn of_film(path: PathBuf, dry_run: bool) -> anyhow::Result<Destination> {
+fn of_film(path: PathBuf, format: Format, dry_run: bool) -> anyhow::Result<Destination> {
+    let is_special =
+        |path: &Path| fs::metadata(path).is_ok_and(|kind| !kind.is_file() && !kind.is_dir());
+    if format.needs_ffmpeg() && (path == Path::new("-") || is_special(&path)) {
+        return Err(misuse(format!(
+            "ffmpeg goes back and forth in a .{} film, so it needs a file; name one with -o, or send --format y4m",
+            format.extension()
+        )));
+    }
     if path == Path::new("-") {
         return Ok(Destination::Stdout);
     }
@@ -59,7 +68,7 @@ fn of_film(path: PathBuf, dry_run: bool) -> anyhow::Result<Destination> {
             path.display()
         )));
     }
-    if fs::metadata(&path).is_ok_and(|kind| !kind.is_file() && !kind.is_dir()) {
+    if is_special(&path) {
         return Ok(Destination::Device(path));
     }
     if !dry_run {
@@ -70,18 +79,24 @@ fn of_film(path: PathBuf, dry_run: bool) -> anyhow::Result<Destination> {
 
 fn of_pictures(
     path: PathBuf,
+    format: Format,
     args: &RenderArgs,
     animation: &Animation,
     count: u64,
 ) -> anyhow::Result<Destination> {
     if path == Path::new("-") && count > 1 {
         return Err(misuse(
-            "several frames go through a pipe as a film; add --format y4m or --format raw, or choose one frame with \
+            "several frames go through a pipe as a film; choose --format y4m or --format raw, or choose one frame with \
              --frames",
         ));
     }
-    if path != Path::new("-") && !has_extension(&path, "png") {
-        return Err(unsupported_extension(&path, Format::EXTENSIONS));
+    let extension = format.extension();
+    if path != Path::new("-") && !has_extension(&path, extension) {
+        let expected = match args.format {
+            Some(_) => &format!(".{extension}"),
+            None => Format::EXTENSIONS,
+        };
+        return Err(unsupported_extension(&path, expected));
     }
     // The name of a still picture is taken literally.
     let pattern = if animation.is_still() {
@@ -96,7 +111,7 @@ fn of_pictures(
         return Ok(Destination::Sequence(pattern));
     }
     if count == 1 {
-        return Destination::of_picture(path, "png", &args.scene);
+        return Destination::of_picture(path, extension, &args.scene);
     }
     if path.to_str().is_none() {
         return Err(misuse(format!(
@@ -122,20 +137,22 @@ fn is_folder(path: &Path) -> bool {
     ends_in_slash || (path.extension().is_none() && path.is_dir())
 }
 
-/// `mine.toml` gives `mine.png`, `classic` gives `classic.png`, an animation `orbit_####.png`.
+/// `mine.toml` gives `mine.png`, `classic` gives `classic.png`, an animation `orbit_####.png`, a scene with layers
+/// `mine.exr`.
 fn default_name(scene: &Path, animation: &Animation, format: Option<Format>) -> PathBuf {
     let mut name = scene
         .file_stem()
         .map_or_else(|| OsString::from("picture"), OsString::from);
-    match format {
-        Some(Format::Y4m) => name.push(".y4m"),
-        Some(Format::Raw) => name.push(".raw"),
-        _ if animation.is_still() => name.push(".png"),
-        _ => {
-            name.push("_");
-            name.push("#".repeat(DIGITS));
-            name.push(".png");
-        }
+    let format = format.unwrap_or(if animation.layers().is_empty() {
+        Format::Png
+    } else {
+        Format::Exr
+    });
+    if !format.is_film() && !animation.is_still() {
+        name.push("_");
+        name.push("#".repeat(DIGITS));
     }
+    name.push(".");
+    name.push(format.extension());
     name.into()
 }

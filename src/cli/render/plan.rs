@@ -11,10 +11,10 @@ use super::super::stdio::StdoutError;
 use super::super::writable;
 use super::args::RenderArgs;
 use super::format::Format;
-use super::output;
-use super::png::{self, FrameOrigin};
-use super::sequence;
+use super::origin::FrameOrigin;
+use super::{draw, exr, ffmpeg, film, form, memory, npz, output, png, sequence};
 use crate::render::needs::Needs;
+use crate::render::{Form, Pixels};
 use crate::scene::{Animation, Scene};
 
 /// Frames to be drawn, and where they go: checked.
@@ -27,6 +27,8 @@ pub(super) struct Plan<'a> {
     /// The first frame's scene.
     pub(super) first: Scene,
     pub(super) format: Format,
+    /// The pixels of a frame.
+    pub(super) form: Form,
     pub(super) destination: Destination,
     pub(super) needs: Needs,
     /// The files that are read, by their canonical names.
@@ -45,6 +47,9 @@ impl<'a> Plan<'a> {
     ) -> anyhow::Result<(Self, Checked)> {
         let count = frames.count();
         let (format, destination) = output::checked(args, animation, count)?;
+        let form = form::checked(args, animation, format)?;
+        draw::check(form)?;
+        memory::check(args.max_memory, animation.image(), form)?;
         let needs = Needs::of_animation(animation)?;
         let needed = needs.table().map(|candidate| candidate.name);
         let mut inputs = vec![(args.scene.clone(), "scene")];
@@ -59,11 +64,14 @@ impl<'a> Plan<'a> {
         let checked = args.method.check(needed)?;
         let mut numbers = frames.iter();
         let first = animation.check(numbers.next().unwrap_or(1))?;
-        if !args.dry_run
-            && format != Format::Png
+        if !args.dry_run && format.needs_ffmpeg() {
+            ffmpeg::check(format)?;
+        } else if !args.dry_run
+            && format.is_film()
             && let Destination::File(path) = &destination
         {
-            writable::check_space(path, format.film_bytes(first.image(), count))?;
+            let bytes = film::frame_bytes(format, form, first.image());
+            writable::check_space(path, count.saturating_mul(bytes))?;
         }
         for number in numbers {
             animation.check(number)?;
@@ -75,6 +83,7 @@ impl<'a> Plan<'a> {
             count,
             first,
             format,
+            form,
             destination,
             needs,
             inputs,
@@ -113,7 +122,8 @@ impl<'a> Plan<'a> {
         match &self.destination {
             Destination::Sequence(pattern) if !self.args.overwrite => {
                 let origin = origin.of_frame(number);
-                sequence::is_finished(&pattern.file(number), self.most_bytes(), &origin)
+                let file = pattern.file(number);
+                sequence::is_finished(&file, self.most_bytes(), |file| self.made(file, &origin))
             }
             _ => false,
         }
@@ -128,9 +138,9 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// An upper bound for the bytes of a frame's PNG file: its pixels as they are, and a little.
+    /// An upper bound for the bytes of a frame's file: its pixels as they are, and a little.
     pub(super) fn most_bytes(&self) -> u64 {
-        self.pixels() * 17 / 16 + 4096
+        self.pixels() * self.form.bytes() as u64 * 17 / 16 + 8192
     }
 
     /// The number of pixels of a frame.
@@ -139,13 +149,35 @@ impl<'a> Plan<'a> {
         u64::from(size.width) * u64::from(size.height)
     }
 
-    /// The PNG file of a frame.
+    /// The file of a frame that is a picture or data.
     ///
     /// # Errors
-    /// Not enough memory.
-    pub(super) fn encode(&self, pixels: &[u8], origin: &FrameOrigin) -> io::Result<Vec<u8>> {
+    /// Not enough memory, or a picture that is too large for the format.
+    pub(super) fn encode(&self, pixels: Pixels<'_>, origin: &FrameOrigin) -> io::Result<Vec<u8>> {
         let size = self.first.image();
-        let one_bit = !self.first.antialias() || !self.args.method.is_table();
-        png::encode(pixels, (size.width, size.height), one_bit, origin)
+        match (self.format, pixels) {
+            (Format::Exr, Pixels::Planes(planes)) => exr::encode(planes, size, origin),
+            (Format::Npz, Pixels::Planes(planes)) => npz::encode(planes, size, origin),
+            _ => png::encode(pixels, size, self.depth() == 1, origin),
+        }
+    }
+
+    /// Whether a file is whole, and what [`Self::encode`] makes of this origin.
+    fn made(&self, file: &[u8], origin: &FrameOrigin) -> bool {
+        match self.format {
+            Format::Exr => exr::made(file, origin),
+            Format::Npz => npz::made(file, origin),
+            _ => png::made(file, self.depth(), origin),
+        }
+    }
+
+    /// The bits of a PNG picture's samples: one where a mask's edges are hard and no number is asked for.
+    fn depth(&self) -> u8 {
+        let is_hard = !self.first.antialias() || !self.args.method.is_table();
+        match self.form {
+            Form::Grey8 if is_hard && self.args.bits.is_none() => 1,
+            Form::Grey16 | Form::Rgb16 => 16,
+            _ => 8,
+        }
     }
 }

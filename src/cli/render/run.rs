@@ -2,6 +2,8 @@
 
 use std::convert::Infallible;
 use std::fs;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::super::destination::Destination;
@@ -10,12 +12,11 @@ use super::super::method::Method;
 use super::super::pattern::Pattern;
 use super::super::progress::{FrameProgress, ProgressKind, Report};
 use super::super::writable;
-use super::draw::{DrawnFrame, FrameReport, FrameSource, Workspace};
+use super::draw::{DrawnFrame, FrameReport, FrameSource};
 use super::film::{Broken, Film};
-use super::format::Format;
 use super::memory;
+use super::origin::FrameOrigin;
 use super::plan::Plan;
-use super::png::FrameOrigin;
 use super::run_stats::RunStats;
 use super::sequence;
 
@@ -57,13 +58,13 @@ pub(super) fn run(plan: &Plan<'_>, method: &Method, report: Report) -> anyhow::R
             stats: RunStats::default(),
             interrupt: &interrupt,
         };
-        match (plan.format, &plan.destination) {
-            (Format::Png, Destination::Sequence(pattern)) => run.sequence(pattern),
-            (Format::Png, destination) => run.picture(destination)?,
-            (format, destination) => {
+        match &plan.destination {
+            destination if plan.format.is_film() => {
                 let (size, rate) = (plan.first.image(), plan.animation.rate());
-                run.film(Film::begin(format, destination, size, rate)?)?;
+                run.film(Film::begin(plan.format, destination, size, rate)?)?;
             }
+            Destination::Sequence(pattern) => run.sequence(pattern),
+            destination => run.picture(destination)?,
         }
         anyhow::Ok(run.stats)
     })?;
@@ -104,13 +105,14 @@ fn sample(plan: &Plan<'_>, frames: &FrameSource<'_>, origin: &FrameOrigin) -> an
     let range = plan.frames;
     let (first, last) = (range.iter().next().unwrap_or(1), range.last());
     let middle = range.above(first.midpoint(last)).unwrap_or(last);
-    let (mut workspace, mut pixels) = (Workspace::default(), Vec::new());
-    let mut most = 0;
-    for number in [first, middle, last] {
-        frames.draw_one(number, &mut workspace, &mut pixels)?;
-        most = most.max(plan.encode(&pixels, origin)?.len() as u64);
-    }
-    Ok(most)
+    let most = AtomicU64::new(0);
+    let done = |drawn: DrawnFrame<'_>| {
+        let file = plan.encode(drawn.pixels?.0, origin)?;
+        most.fetch_max(file.len() as u64, Ordering::Relaxed);
+        anyhow::Ok(())
+    };
+    frames.draw_all([first, middle, last].into_iter(), 3, 1, |_| true, done)?;
+    Ok(most.into_inner())
 }
 
 /// Frames being drawn.
@@ -135,7 +137,7 @@ impl Run<'_> {
             .frames
             .iter()
             .take_while(|_| !self.interrupt.is_asked());
-        let at_a_time = memory::frames_in(plan.args.max_memory, plan.first.image());
+        let at_a_time = memory::frames_in(plan.args.max_memory, plan.first.image(), plan.form);
         self.frames
             .draw_all(numbers, plan.count, at_a_time, wanted, done)
     }
@@ -144,7 +146,7 @@ impl Run<'_> {
     fn picture(&self, destination: &Destination) -> anyhow::Result<()> {
         self.draw(
             |_| true,
-            |drawn| self.encode_and_write(drawn, |_, png| destination.write(png)),
+            |drawn| self.encode_and_write(drawn, |_, file| destination.write(file)),
         )
     }
 
@@ -159,8 +161,8 @@ impl Run<'_> {
             !is_finished
         };
         // The reason without the frame's own file name: equal reasons of many frames are reported together.
-        let write = |number, png: &[u8]| {
-            sequence::write(&pattern.file(number), png, &self.plan.inputs)
+        let write = |number, file: &[u8]| {
+            sequence::write(&pattern.file(number), file, &self.plan.inputs)
                 .map_err(|error| anyhow::anyhow!("{pattern} cannot be written: {error}"))
         };
         let done = |drawn: DrawnFrame<'_>| {
@@ -180,24 +182,30 @@ impl Run<'_> {
     ) -> anyhow::Result<()> {
         let (pixels, effort) = pixels?;
         let start = Instant::now();
-        let png = self.plan.encode(pixels, &self.origin.of_frame(number))?;
+        let file = self.plan.encode(pixels, &self.origin.of_frame(number))?;
         let encoded = Instant::now();
-        write(number, &png)?;
+        write(number, &file)?;
         self.done(number, effort, encoded - start, encoded.elapsed());
         Ok(())
     }
 
     /// Draws all frames into one file or pipe.
     fn film(&self, film: Film<'_>) -> anyhow::Result<()> {
+        // Memory for encoded frames: as many as threads use at a time.
+        let spare = Mutex::new(Vec::new());
+        let spare = || spare.lock().unwrap_or_else(PoisonError::into_inner);
         let done = |drawn: DrawnFrame<'_>| {
             let (number, place) = (drawn.number, drawn.place);
-            let (pixels, effort) = match drawn.pixels {
-                Ok((pixels, effort)) => (Ok(pixels), effort),
+            let start = Instant::now();
+            let mut memory = spare().pop().unwrap_or_default();
+            let (frame, effort) = match drawn.pixels {
+                Ok((pixels, effort)) => (Ok(film.encode(pixels, &mut memory)), effort),
                 Err(error) => (Err(error.into()), FrameReport::default()),
             };
-            let start = Instant::now();
-            film.write(place, pixels)?;
-            self.done(number, effort, Duration::ZERO, start.elapsed());
+            let encoded = Instant::now();
+            film.write(place, frame)?;
+            self.done(number, effort, encoded - start, encoded.elapsed());
+            spare().push(memory);
             Ok::<(), Broken>(())
         };
         let drawn = self.draw(|_| true, done);

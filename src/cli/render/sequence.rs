@@ -1,4 +1,4 @@
-//! Frames as PNG files, one each.
+//! Frames as files, one each.
 
 use std::fs;
 use std::io::{self, Write};
@@ -6,21 +6,20 @@ use std::path::{Path, PathBuf};
 
 use super::super::frame_range::FrameRange;
 use super::super::pattern::Pattern;
-use super::png::FrameOrigin;
 use crate::output::{Unfinished, leftover, remove_if_dead};
 
-/// Whether a frame's file exists, is whole, and is of the same origin. A file of more than `most` bytes is not.
-pub(super) fn is_finished(path: &Path, most: u64, origin: &FrameOrigin) -> bool {
+/// Whether a frame's file exists, and is what is to be `made`. A file of more than `most` bytes is not.
+pub(super) fn is_finished(path: &Path, most: u64, made: impl Fn(&[u8]) -> bool) -> bool {
     // Opening a pipe would wait for its writer.
     let may_be = fs::metadata(path).is_ok_and(|kind| kind.is_file() && kind.len() <= most);
-    may_be && fs::read(path).is_ok_and(|file| origin.made(&file))
+    may_be && fs::read(path).is_ok_and(|file| made(&file))
 }
 
 /// Writes a frame's file, whole or not at all. A link is followed, unless it leads to one of `inputs`.
 ///
 /// # Errors
 /// What the system returns.
-pub(super) fn write(path: &Path, png: &[u8], inputs: &[PathBuf]) -> io::Result<()> {
+pub(super) fn write(path: &Path, bytes: &[u8], inputs: &[PathBuf]) -> io::Result<()> {
     // A pipe or a device would be replaced by a file.
     if fs::metadata(path).is_ok_and(|kind| !kind.is_file()) {
         return Err(io::Error::other(
@@ -34,7 +33,7 @@ pub(super) fn write(path: &Path, png: &[u8], inputs: &[PathBuf]) -> io::Result<(
         ));
     }
     let mut unfinished = Unfinished::new(path)?;
-    unfinished.file().write_all(png)?;
+    unfinished.file().write_all(bytes)?;
     unfinished.finish()
 }
 

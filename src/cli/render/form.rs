@@ -1,0 +1,80 @@
+//! Which pixels a scene's frames have in a format.
+
+use super::super::misuse::misuse;
+use super::args::RenderArgs;
+use super::format::Format;
+use crate::render::Form;
+use crate::scene::{Animation, ImageSize, Layer, LayerSet};
+
+/// The pixels of the frames.
+///
+/// # Errors
+/// The format cannot hold what the scene or the options ask for.
+pub(super) fn checked(
+    args: &RenderArgs,
+    animation: &Animation,
+    format: Format,
+) -> anyhow::Result<Form> {
+    let (layers, bits) = (animation.layers(), animation.bits());
+    let is_lit = animation.light().is_some();
+    let name = format.extension();
+    if args.bits.is_some() && format != Format::Png {
+        return Err(misuse(format!(
+            "--bits is the size of a PNG picture's samples, and .{name} files have their own; leave it out"
+        )));
+    }
+    if args.exposure.is_some() && format.has_layers() {
+        return Err(misuse(format!(
+            "--exposure changes pictures and films, and .{name} files hold light as it is; leave it out"
+        )));
+    }
+    if format.has_layers() {
+        return Ok(Form::Layers(with_defaults(layers, format, is_lit)));
+    }
+    if !layers.is_empty() {
+        return Err(misuse(format!(
+            ".{name} files hold no layers of data; name a .exr or .npz file with -o, or leave out the layers"
+        )));
+    }
+    if bits == 16 && format != Format::Png {
+        return Err(misuse(format!(
+            ".{name} films have 8 bits a sample, and the scene asks for 16; set image.bits = 8, or write .png or .exr files"
+        )));
+    }
+    if is_lit && format == Format::Y4mGray {
+        return Err(misuse(
+            "y4m-gray films hold masks, and this scene has light; choose --format y4m, or remove [disk.light]",
+        ));
+    }
+    let ImageSize { width, height } = animation.image();
+    if format.shares_chroma() && (width % 2 == 1 || height % 2 == 1) {
+        let even = |side: u32| side + side % 2;
+        return Err(misuse(format!(
+            "{width} × {height}: in .{name} films 2 × 2 pixels share one sample of colour (4:2:0), so width and height \
+             must be even; choose --size {}x{}, or --format raw",
+            even(width),
+            even(height)
+        )));
+    }
+    Ok(match (is_lit, bits) {
+        (false, 16) => Form::Grey16,
+        (false, _) => Form::Grey8,
+        (true, 16) => Form::Rgb16,
+        (true, _) => Form::Rgb8,
+    })
+}
+
+/// The layers of a file: those that the scene names, or else coverage, and colour where there is light. An OpenEXR file
+/// with colour has alpha too.
+fn with_defaults(layers: LayerSet, format: Format, is_lit: bool) -> LayerSet {
+    let layers = match (layers.is_empty(), is_lit) {
+        (false, _) => layers,
+        (true, false) => LayerSet::default().with(Layer::Coverage),
+        (true, true) => [Layer::Coverage, Layer::Colour].into_iter().collect(),
+    };
+    if format == Format::Exr && layers.has(Layer::Colour) {
+        layers.with(Layer::Alpha)
+    } else {
+        layers
+    }
+}

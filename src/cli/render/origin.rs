@@ -1,0 +1,85 @@
+//! What a frame was made of, as its file records it.
+
+/// What a frame was made of: with the program's version, all that its bytes depend on.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct FrameOrigin {
+    /// The SHA-256 of the scene's TOML form, as hexadecimal digits.
+    pub(super) scene: String,
+    /// The SHA-256 of the table's file, or the name of the method in place of a table.
+    pub(super) table: String,
+    /// The frame's number.
+    pub(super) frame: u32,
+}
+
+/// The key of the program's name and version.
+pub(super) const SOFTWARE: &str = "Software";
+
+/// The program's name and version.
+pub(super) const PROGRAM: &str = concat!("darkness ", env!("CARGO_PKG_VERSION"));
+
+impl FrameOrigin {
+    /// The origin of another frame of the same animation.
+    pub(super) fn of_frame(&self, frame: u32) -> Self {
+        Self {
+            frame,
+            ..self.clone()
+        }
+    }
+
+    /// The texts that a file records, as key and text.
+    pub(super) fn texts(&self) -> [(&'static str, String); 4] {
+        [
+            (SOFTWARE, PROGRAM.into()),
+            ("darkness:scene", self.scene.clone()),
+            ("darkness:table", self.table.clone()),
+            ("darkness:frame", self.frame.to_string()),
+        ]
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// The origin of a frame.
+    pub(in super::super) fn origin(frame: u32) -> FrameOrigin {
+        FrameOrigin {
+            scene: "5c".repeat(32),
+            table: "none".into(),
+            frame,
+        }
+    }
+
+    /// Asserts that `made` takes a frame's file for that frame's, and neither with any damage nor for another's.
+    pub(in super::super) fn assert_no_other_is_taken(
+        file: &[u8],
+        origin: &FrameOrigin,
+        made: impl Fn(&[u8], &FrameOrigin) -> bool,
+    ) {
+        assert!(made(file, origin));
+        let others = [
+            origin.of_frame(13),
+            FrameOrigin {
+                scene: "5d".repeat(32),
+                ..origin.clone()
+            },
+            FrameOrigin {
+                table: "exact".into(),
+                ..origin.clone()
+            },
+        ];
+        assert!(others.iter().all(|other| !made(file, other)));
+        for length in 0..file.len() {
+            assert!(!made(&file[..length], origin), "{length}");
+        }
+        assert!(!made(&[file, b"\n"].concat(), origin));
+        let mut damaged = file.to_vec();
+        for at in 0..file.len() {
+            for bit in 0..8 {
+                damaged[at] ^= 1 << bit;
+                assert!(!made(&damaged, origin), "byte {at}, bit {bit}");
+                damaged[at] ^= 1 << bit;
+            }
+        }
+    }
+}
