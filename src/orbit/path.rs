@@ -154,7 +154,8 @@ const MOST_ANCHORS: u32 = 8;
 ///
 /// An *anchor* is a point of the orbit whose swept angle is known. From an anchor within a quarter of a radian the
 /// orbit equation leads to `angle` in a few Taylor steps, which have no singularity at the turning point. Such a guess
-/// needs one swept angle; without it the equation itself makes one, stepped from the start.
+/// needs one swept angle, and two where its branch is wrong; without a guess the equation itself makes one, stepped
+/// from the start.
 ///
 /// The error is that of the anchor's swept angle times |du/dφ|, and the rounding of the steps.
 pub(crate) fn point_at_angle<A: SweptAngles + ?Sized>(
@@ -174,7 +175,15 @@ pub(crate) fn point_at_angle<A: SweptAngles + ?Sized>(
         return straight_u_at(orbit.start.u, w, angle).map(|u| (u, Branch::Direct));
     }
     let mut anchor = match guess {
-        Some((u, branch)) if within_flight(u) => Anchor::at(angles, orbit, u, branch),
+        Some((u, branch)) if within_flight(u) => {
+            let guessed = Anchor::at(angles, orbit, u, branch);
+            if turns(orbit) && (angle - guessed.angle).abs() > LONGEST_STEP {
+                let other = Anchor::at(angles, orbit, u, branch.other());
+                guessed.nearer(other, angle)
+            } else {
+                guessed
+            }
+        }
         _ => Anchor::start(orbit),
     };
     let mut best = None;
@@ -227,6 +236,15 @@ impl Anchor {
         Self {
             point: PhasePoint::new(u, w),
             angle: angles.to_end(orbit),
+        }
+    }
+
+    /// Returns the one of two anchors that is nearer to an angle.
+    fn nearer(self, other: Self, angle: f64) -> Self {
+        if (angle - other.angle).abs() < (angle - self.angle).abs() {
+            other
+        } else {
+            self
         }
     }
 

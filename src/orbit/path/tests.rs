@@ -104,7 +104,8 @@ fn points_at_an_angle_invert_the_swept_angle() {
     assert!(count > 10_000, "{count}");
 }
 
-/// A guess changes the answer by rounding only, whatever it is; a good one costs one swept angle.
+/// A guess changes the answer by rounding only, whatever it is; a good one costs one swept angle, and one more on
+/// the wrong branch.
 #[test]
 fn a_good_guess_costs_one_angle_and_a_bad_one_does_no_harm() {
     let counted = Counted::default();
@@ -123,9 +124,13 @@ fn a_good_guess_costs_one_angle_and_a_bad_one_does_no_harm() {
                         error <= 2.0 * allowed(&orbit, u, angle),
                         "{error:e}: {found}, not {u} at {angle} by {guess:?}, {orbit:?}"
                     );
-                    if guessed == u && taken == branch {
+                    if guessed == u {
                         let angles = counted.take();
-                        assert_eq!(angles, 1, "{u} at {angle}, {orbit:?}");
+                        let most = if taken == branch { 1 } else { 2 };
+                        assert!(
+                            angles <= most,
+                            "{angles} angles for {u} at {angle}, {orbit:?}"
+                        );
                         good += 1;
                     }
                 }
