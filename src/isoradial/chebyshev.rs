@@ -6,14 +6,14 @@ use core::f64::consts::PI;
 
 /// The nodes `cos(πi/n)` of degree n, ends included.
 #[derive(Debug)]
-pub(super) struct Chebyshev {
+pub(crate) struct Chebyshev {
     /// `cos(πi/n)` for i from 0 to 2n − 1.
     cosines: Vec<f64>,
 }
 
 impl Chebyshev {
     /// The nodes of a degree of at least 1.
-    pub(super) fn new(degree: usize) -> Self {
+    pub(crate) fn new(degree: usize) -> Self {
         let cosine = |i: usize| {
             // The middle is 0, and the nodes are alike on both sides of it.
             if 2 * i == degree || 2 * i == 3 * degree {
@@ -32,12 +32,12 @@ impl Chebyshev {
     }
 
     /// The nodes, from 1 down to −1.
-    pub(super) fn nodes(&self) -> impl Iterator<Item = f64> {
+    pub(crate) fn nodes(&self) -> impl Iterator<Item = f64> {
         self.cosines[..=self.degree()].iter().copied()
     }
 
     /// The coefficients of `T_0` to `T_n` of the polynomial through values on the nodes (a discrete cosine transform).
-    pub(super) fn coefficients(&self, values: &[f64]) -> Vec<f64> {
+    pub(crate) fn coefficients(&self, values: &[f64]) -> Vec<f64> {
         let n = self.degree();
         let half = |i: usize| if i == 0 || i == n { 0.5 } else { 1.0 };
         (0..=n)
@@ -51,7 +51,7 @@ impl Chebyshev {
     }
 
     /// The coefficients of the powers of a sum of `T_k`, the lowest first.
-    pub(super) fn powers(&self, coefficients: &[f64]) -> Vec<f64> {
+    pub(crate) fn powers(&self, coefficients: &[f64]) -> Vec<f64> {
         let n = coefficients.len();
         let mut powers = vec![0.0; n];
         let (mut before, mut this) = (vec![0.0; n], vec![0.0; n]);
@@ -73,7 +73,7 @@ impl Chebyshev {
     }
 
     /// The sum of `c_k T_k` at x (Clenshaw 1955, *Math. Tables Aids Comput.* 9, 118).
-    pub(super) fn sum(coefficients: &[f64], x: f64) -> f64 {
+    pub(crate) fn sum(coefficients: &[f64], x: f64) -> f64 {
         let (mut first, mut second) = (0.0, 0.0);
         for c in coefficients[1..].iter().rev() {
             (first, second) = (2.0 * x * first - second + c, first);

@@ -115,6 +115,11 @@ impl Isoradials {
         self.spec.union(spec) == Some(self.spec)
     }
 
+    /// Returns the inverse radii of the outer and the inner edge.
+    pub(crate) fn u_edges(&self) -> (f64, f64) {
+        (self.spec.u_outer, self.spec.u_inner)
+    }
+
     /// Returns what they were built for.
     pub(super) fn spec(&self) -> &CurveSpec {
         &self.spec
@@ -167,6 +172,12 @@ impl Isoradials {
     /// it meets the plane at `tan φ₁ = n/d` with `n = |n·p̂| s`.
     #[inline]
     pub fn meets(&self, z: f64, s: f64, n: f64, d: f64) -> bool {
+        self.front(z, s, n, d).is_some()
+    }
+
+    /// Returns the lowest order at which a ray of the picture meets the disk: see [`Self::meets`].
+    #[inline]
+    pub(crate) fn front(&self, z: f64, s: f64, n: f64, d: f64) -> Option<u32> {
         let excess = z - self.critical * s;
         let mut x = None;
         for curves in self.quarter(usize::from(d < 0.0)) {
@@ -175,10 +186,10 @@ impl Isoradials {
             }
             let x = *x.get_or_insert_with(|| x_of_crossing(n, d));
             if curves.meets(excess, s, x) {
-                return true;
+                return Some(curves.order);
             }
         }
-        false
+        None
     }
 
     /// Returns the sectors of one quarter turn by rising x: which order lies in front.

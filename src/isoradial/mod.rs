@@ -61,12 +61,13 @@ mod ray_bounds;
 mod sensitivity;
 mod solve;
 
+pub(crate) use chebyshev::Chebyshev;
 pub use curve_spec::CurveSpec;
 pub use edge::{Edge, EdgeError};
 pub use isoradials::{ImageOrder, Isoradials, OmittedOrder};
 pub(crate) use outline::{Boundary, Sector};
+pub(crate) use radius_map::PlaneMeeting;
 pub use radius_map::RadiusMap;
-pub(crate) use radius_map::{PlaneMeeting, RadiusColumn, RadiusSection};
 pub use ray_bounds::RayBounds;
 pub use sensitivity::sensitivity;
 pub use solve::height_at;

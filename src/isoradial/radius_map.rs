@@ -62,7 +62,7 @@ const INNERMOST_U: f64 = 0.6;
 const OUTERMOST_SHARE: f64 = 0.5;
 
 /// Where each ray of one camera radius meets the disk: see the [module's page](self).
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct RadiusMap {
     /// For each of the two quarter turns, the pieces of its orders, lowest first.
     quarters: [Vec<RadiusPiece>; 2],
@@ -271,6 +271,34 @@ impl RadiusColumn<'_> {
     }
 }
 
+impl Isoradials {
+    /// Returns the inverse radius at which the ray with `κ − κ_c = h` meets the disk's plane in an order, by the
+    /// method itself: for the gaps of a map. `None` where it ends before.
+    pub(crate) fn u_in_gap(
+        &self,
+        order: u32,
+        h: f64,
+        meets: PlaneMeeting,
+        angles: &impl SweptAngles,
+    ) -> Option<f64> {
+        let start = f64::from(order) * PI + meets.quarter as f64 * FRAC_PI_2;
+        let angle = start + libm::atan2(meets.x, 1.0 - meets.x);
+        point_at_angle(angles, &self.orbit(h), angle, None).map(|(u, _)| u)
+    }
+
+    /// The orbit with `κ = κ_c + h`.
+    fn orbit(&self, h: f64) -> Orbit {
+        let spec = self.spec();
+        let critical = spec.slope_scale * self.critical();
+        let excess = spec.slope_scale * h;
+        Orbit::with_delta(
+            spec.u0,
+            critical + excess,
+            excess * (2.0 * critical + excess),
+        )
+    }
+}
+
 /// The rays that meet the disk at one order in one quarter turn.
 struct PieceRays<'a, A> {
     curves: &'a Isoradials,
@@ -468,13 +496,7 @@ impl<A: SweptAngles> Rays<'_, A> {
         let [outer, inner] = self.edges;
         let stored = outer + tau * (inner - outer);
         let h = if pole { stored / self.x } else { stored };
-        let critical = spec.slope_scale * self.of.curves.critical();
-        let excess = spec.slope_scale * h;
-        let orbit = Orbit::with_delta(
-            spec.u0,
-            critical + excess,
-            excess * (2.0 * critical + excess),
-        );
+        let orbit = self.of.curves.orbit(h);
         let guess = if guess.is_nan() { flat } else { guess };
         let guess = Some((guess, self.of.branch.get()));
         let (u, branch) = point_at_angle(self.of.angles, &orbit, self.angle, guess)?;

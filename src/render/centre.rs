@@ -2,27 +2,40 @@
 
 use rayon::prelude::*;
 
-use super::WHITE;
+use super::frame::MaskSample;
 use crate::isoradial::Isoradials;
 use crate::scene::View;
 
 /// Fills a buffer that the frame fits, evaluating each pixel by itself.
-pub(super) fn fill_every_pixel(view: &View, curves: &Isoradials, pixels: &mut [u8], stride: usize) {
+pub(super) fn fill_every_pixel<T: MaskSample>(
+    view: &View,
+    curves: &Isoradials,
+    pixels: &mut [T],
+    stride: usize,
+) {
     let width = view.width() as usize;
     let rows = pixels.par_chunks_mut(stride).enumerate();
     rows.for_each(|(row, pixels)| {
         for (column, pixel) in pixels[..width].iter_mut().enumerate() {
-            let sees = sees(view, curves, (column as f64 + 0.5, row as f64 + 0.5));
-            *pixel = if sees { WHITE } else { 0 };
+            let seen = front(view, curves, (column as f64 + 0.5, row as f64 + 0.5));
+            *pixel = if seen.is_some() {
+                T::WHITE
+            } else {
+                T::default()
+            };
         }
     });
 }
 
-/// Returns whether the disk is seen at a place of the picture, in pixels from its left and its top.
+/// Returns the order in front at a place of the picture, in pixels from its left and its top.
 #[inline]
-pub(super) fn sees(view: &View, curves: &Isoradials, (column, row): (f64, f64)) -> bool {
+pub(super) fn front(view: &View, curves: &Isoradials, (column, row): (f64, f64)) -> Option<u32> {
     let ray = view.ray_at(view.x_at(column), view.y_at(row));
     let s = ray.transverse();
     // A ray straight at the hole or away from it has no plane and meets no disk.
-    s > 0.0 && curves.meets(ray.z, s, view.n_p().abs() * s, view.plane_slope() * ray.ta)
+    if s > 0.0 {
+        curves.front(ray.z, s, view.n_p().abs() * s, view.plane_slope() * ray.ta)
+    } else {
+        None
+    }
 }

@@ -32,6 +32,11 @@ pub enum RenderError {
         /// The bytes of the buffer.
         bytes: usize,
     },
+    /// Colours or temperatures were asked of a scene that has none.
+    #[error(
+        "the scene's disk has no light to show: give it a [disk.light] table, with a temperature for temperatures"
+    )]
+    NoLight,
     /// A ray could not be followed.
     #[error(transparent)]
     Orbit(#[from] OrbitError),
@@ -46,52 +51,59 @@ const WORKING_MEMORY: usize = 16 << 20;
 /// [`RenderError::Memory`]
 pub(super) fn blank(view: &View) -> Result<Vec<u8>, RenderError> {
     let mut pixels = Vec::new();
-    make_room(view, &mut pixels)?;
+    make_room(view, 1, &mut pixels)?;
     Ok(pixels)
 }
 
-/// Makes `pixels` as long as a frame. Old content may stay.
+/// Makes `samples` as long as a frame with so many `channels`. Old content may stay.
 ///
 /// # Errors
 /// [`RenderError::Memory`]
-pub(super) fn make_room(view: &View, pixels: &mut Vec<u8>) -> Result<(), RenderError> {
+pub(super) fn make_room<T: Copy + Default>(
+    view: &View,
+    channels: usize,
+    samples: &mut Vec<T>,
+) -> Result<(), RenderError> {
     let (width, height) = (view.width(), view.height());
-    let bytes = u64::from(width) * u64::from(height);
+    let length = u64::from(width) * u64::from(height) * channels as u64;
+    let bytes = length * size_of::<T>() as u64;
     let memory = || RenderError::Memory {
         width,
         height,
         bytes,
     };
-    let length = usize::try_from(bytes).map_err(|_| memory())?;
-    let more = length.saturating_sub(pixels.len());
-    pixels.try_reserve_exact(more).map_err(|_| memory())?;
+    let length = usize::try_from(length).map_err(|_| memory())?;
+    let more = length.saturating_sub(samples.len());
+    samples.try_reserve_exact(more).map_err(|_| memory())?;
     if more > 0 {
         // Asks for what drawing takes beside the frame and gives it back: a later refusal would end the process.
         Vec::<u8>::new()
             .try_reserve_exact(WORKING_MEMORY)
             .map_err(|_| memory())?;
     }
-    pixels.resize(length, 0);
+    samples.resize(length, T::default());
     Ok(())
 }
 
-/// Returns the bytes from the first pixel of a frame to its last, where rows are `stride` bytes apart.
+/// Returns the samples from the first one of a frame to its last, where rows are `stride` samples apart.
 ///
 /// # Errors
-/// [`RenderError::Buffer`] where rows overlap, or `pixels` is shorter.
-pub(super) fn check_buffer(
+/// [`RenderError::Buffer`] where rows overlap, or `samples` is shorter.
+pub(super) fn check_buffer<T>(
     view: &View,
-    pixels: &[u8],
+    channels: usize,
+    samples: &[T],
     stride: usize,
 ) -> Result<usize, RenderError> {
     let (width, height) = (view.width() as usize, view.height() as usize);
-    let needed = stride.saturating_mul(height - 1).saturating_add(width);
-    if stride < width || pixels.len() < needed {
+    let row = channels * width;
+    let needed = stride.saturating_mul(height - 1).saturating_add(row);
+    if stride < row || samples.len() < needed {
         return Err(RenderError::Buffer {
             width,
             height,
-            stride,
-            bytes: pixels.len(),
+            stride: stride.saturating_mul(size_of::<T>()),
+            bytes: size_of_val(samples),
         });
     }
     Ok(needed)

@@ -27,6 +27,7 @@
 //! `cells.rs` how areas add up.
 
 mod arc;
+mod banded;
 pub mod batch;
 mod cells;
 mod centre;
@@ -35,17 +36,22 @@ pub mod coverage;
 mod cross;
 mod error;
 pub mod frame;
+mod ink;
 pub mod mask;
+mod mixture;
 pub mod needs;
+mod patch;
 mod path;
 pub mod pixelwise;
 mod planes;
 mod projection;
 mod renderer;
 mod scene_frame;
+mod shaded;
+mod shader;
 
 pub use error::RenderError;
-pub use planes::{Form, Pixels, Plane};
+pub use planes::{Form, FrameMemory, Pixels, Plane};
 pub use renderer::Renderer;
 pub use scene_frame::FrameReport;
 

@@ -5,15 +5,17 @@ use core::f64::consts::PI;
 
 use rayon::prelude::*;
 
-use super::WHITE;
-use super::error::{RenderError, blank, check_buffer};
+use super::error::{RenderError, blank};
+use super::ink::{Colours, Data, Ink, amplitude};
+use super::planes::Target;
 use crate::light::{Sight, SightGeometry};
 use crate::orbit::integrate::FixedStep;
-use crate::orbit::{Event, EventKind, OrbitError, Orbits, Ray};
+use crate::orbit::invariants::Orbit;
+use crate::orbit::{Event, EventKind, Fate, OrbitError, Orbits, Ray};
 use crate::scene::{Disk, PixelRay, Scene, View};
 
-/// Returns the frame's pixels, row by row from the top, drawn on all threads of the current rayon pool. Calls
-/// `row_done` after each row.
+/// Returns a mask, row by row from the top, drawn on all threads of the current rayon pool. Calls `row_done` after each
+/// row.
 ///
 /// # Errors
 /// [`RenderError::Memory`] if the pixels do not fit into memory, [`RenderError::Orbit`] if the method cannot follow a
@@ -25,41 +27,119 @@ pub fn render(
     row_done: &(dyn Fn() + Sync),
 ) -> Result<Vec<u8>, RenderError> {
     let mut pixels = blank(view)?;
-    render_into(
+    let frame = Frame {
         scene,
         view,
         orbits,
-        row_done,
-        &mut pixels,
-        view.width() as usize,
-    )?;
+        colours: None,
+    };
+    frame.draw(row_done, Target::Grey8(&mut pixels, view.width() as usize))?;
     Ok(pixels)
 }
 
-/// Draws the frame into a caller's buffer: row j begins at `j stride`.
-///
-/// # Errors
-/// [`RenderError::Buffer`] for a stride or a buffer that the frame does not fit; [`RenderError::Orbit`] with what the
-/// method returns for a ray that it cannot follow.
-pub fn render_into(
-    scene: &Scene,
-    view: &View,
-    orbits: &impl Orbits,
-    row_done: &(dyn Fn() + Sync),
-    pixels: &mut [u8],
-    stride: usize,
-) -> Result<(), RenderError> {
-    let needed = check_buffer(view, pixels, stride)?;
-    let width = view.width() as usize;
-    let rows = pixels[..needed].par_chunks_mut(stride).enumerate();
-    rows.try_for_each(|(j, row)| {
-        for (i, pixel) in row[..width].iter_mut().enumerate() {
-            let sees = sees(scene, view, orbits, (i as u32, j as u32))?;
-            *pixel = if sees { WHITE } else { 0 };
+/// A frame whose pixels show what their centres' rays meet.
+pub(super) struct Frame<'a, O> {
+    pub(super) scene: &'a Scene,
+    pub(super) view: &'a View,
+    pub(super) orbits: &'a O,
+    /// Of a scene with light.
+    pub(super) colours: Option<&'a Colours>,
+}
+
+impl<O: Orbits> Frame<'_, O> {
+    /// Draws the frame on all threads of the current rayon pool. Calls `row_done` after each row.
+    ///
+    /// # Errors
+    /// [`RenderError::Orbit`] with what the method returns for a ray that it cannot follow; [`RenderError::NoLight`]
+    /// for colours of a scene without light.
+    pub(super) fn draw(
+        &self,
+        row_done: &(dyn Fn() + Sync),
+        target: Target<'_>,
+    ) -> Result<(), RenderError> {
+        target.check(self.view)?;
+        let colours = || self.colours.ok_or(RenderError::NoLight);
+        match target {
+            Target::Grey8(samples, stride) => self.rows(row_done, samples, stride, |place| {
+                let sees = sees(self.scene, self.view, self.orbits, place)?;
+                Ok([if sees { u8::MAX } else { 0 }])
+            }),
+            Target::Grey16(samples, stride) => self.rows(row_done, samples, stride, |place| {
+                let sees = sees(self.scene, self.view, self.orbits, place)?;
+                Ok([if sees { u16::MAX } else { 0 }])
+            }),
+            Target::Rgb8(samples, stride) => {
+                let palette = &colours()?.palette;
+                self.rows(row_done, samples, stride, |place| {
+                    let [r, g, b, _] = palette.rgb8(self.amplitude(place)?);
+                    Ok([r, g, b])
+                })
+            }
+            Target::Rgb16(samples, stride) => {
+                let colours = colours()?;
+                self.rows(row_done, samples, stride, |place| {
+                    let light = colours.radiance.rgb(self.amplitude(place)?);
+                    Ok(colours.display.rgb16(light))
+                })
+            }
+            Target::Planes(planes, layers) => {
+                let data = Data::new(layers, self.colours, self.scene.light())?;
+                let width = self.view.width() as usize;
+                let rows = Data::bands(planes, width, 1);
+                rows.into_par_iter()
+                    .enumerate()
+                    .try_for_each(|(j, mut row)| {
+                        data.clear(&mut row);
+                        for i in 0..width {
+                            let place = (i as u32, j as u32);
+                            match sight(self.scene, self.view, self.orbits, place)? {
+                                Some(sight) => data.set_sight(&mut row, i, &sight),
+                                None => data.set_hidden(&mut row, i, self.is_captured(place)?),
+                            }
+                        }
+                        row_done();
+                        Ok(())
+                    })
+            }
         }
-        row_done();
-        Ok(())
-    })
+    }
+
+    /// Draws rows of pixels of `N` samples.
+    fn rows<T: Send + Copy, const N: usize>(
+        &self,
+        row_done: &(dyn Fn() + Sync),
+        samples: &mut [T],
+        stride: usize,
+        pixel: impl Fn((u32, u32)) -> Result<[T; N], OrbitError> + Sync,
+    ) -> Result<(), RenderError> {
+        let (width, height) = (self.view.width() as usize, self.view.height() as usize);
+        let needed = stride * (height - 1) + N * width;
+        let rows = samples[..needed].par_chunks_mut(stride).enumerate();
+        rows.try_for_each(|(j, row)| {
+            let pixels = row[..N * width].as_chunks_mut::<N>().0;
+            for (i, samples) in pixels.iter_mut().enumerate() {
+                *samples = pixel((i as u32, j as u32))?;
+            }
+            row_done();
+            Ok(())
+        })
+    }
+
+    /// The amplitude that a pixel's centre sees, 0 where there is no disk.
+    fn amplitude(&self, place: (u32, u32)) -> Result<f32, OrbitError> {
+        let sight = sight(self.scene, self.view, self.orbits, place)?;
+        Ok(sight.map_or(0.0, |sight| amplitude(&sight) as f32))
+    }
+
+    /// Whether the ray of a pixel's centre falls in.
+    fn is_captured(&self, (i, j): (u32, u32)) -> Result<bool, OrbitError> {
+        let pixel = self.view.pixel(i, j);
+        if pixel.transverse() <= 0.0 {
+            return Ok(pixel.z > 0.0);
+        }
+        let ray = Ray::new(self.view.u0(), self.view.dudphi(pixel))?;
+        Ok(Orbit::new(ray).fate() == Fate::Capture)
+    }
 }
 
 /// Whether a pixel (column, row) sees the disk.

@@ -2,15 +2,17 @@
 
 use std::time::Instant;
 
-use image::GrayImage;
+use image::{GrayImage, RgbImage};
 
 use super::batch::{self, Curved, DrawnFrame, Sharing};
-use super::error::{RenderError, blank};
+use super::error::{RenderError, blank, make_room};
 use super::frame::{Threads, Workspace};
+use super::ink::SharedColours;
+use super::planes::{Form, FrameMemory, Plane, Target};
 use super::scene_frame::{FrameReport, SceneFrame};
-use crate::isoradial::{CurveSpec, Isoradials};
+use crate::isoradial::{CurveSpec, Isoradials, RadiusMap};
 use crate::orbit::path::SweptAngles;
-use crate::scene::{Animation, Scene, View};
+use crate::scene::{Animation, LayerSet, Light, Scene, Tone, View};
 use crate::table::{Lookup, Table};
 
 /// Draws scenes.
@@ -42,6 +44,11 @@ pub struct Renderer<A> {
     angles: A,
     /// The curves of the scene before.
     curves: Option<Isoradials>,
+    /// Their map, once a scene has needed it.
+    map: Option<RadiusMap>,
+    /// Light, exposure and tone of the scene before, and their colours.
+    shown: Option<(Option<Light>, u64, Tone)>,
+    colours: SharedColours,
     workspace: Workspace,
 }
 
@@ -58,23 +65,66 @@ impl<A: SweptAngles> Renderer<A> {
         Self {
             angles,
             curves: None,
+            map: None,
+            shown: None,
+            colours: SharedColours::default(),
             workspace: Workspace::default(),
         }
     }
 
-    /// Returns a scene's picture, drawn on all threads of the current rayon pool.
+    /// Returns a scene's mask, drawn on all threads of the current rayon pool: where the disk is.
     ///
     /// # Errors
     /// [`RenderError::Memory`]
     pub fn render(&mut self, scene: &Scene) -> Result<GrayImage, RenderError> {
-        let view = View::new(scene);
-        let mut pixels = blank(&view)?;
-        self.render_into(scene, &mut pixels, view.width() as usize)?;
+        let (width, height) = (scene.image().width, scene.image().height);
+        let mut pixels = blank(&View::new(scene))?;
+        self.render_into(scene, &mut pixels, width as usize)?;
         // The length is that of the picture.
-        Ok(GrayImage::from_raw(view.width(), view.height(), pixels).unwrap_or_default())
+        Ok(GrayImage::from_raw(width, height, pixels).unwrap_or_default())
     }
 
-    /// Draws a scene's picture into a caller's memory, on all threads of the current rayon pool. Row j begins at byte
+    /// Returns a scene's picture in colour, sRGB, drawn on all threads of the current rayon pool.
+    ///
+    /// # Errors
+    /// [`RenderError::NoLight`] for a scene without light, [`RenderError::Memory`].
+    pub fn render_rgb(&mut self, scene: &Scene) -> Result<RgbImage, RenderError> {
+        let (width, height) = (scene.image().width, scene.image().height);
+        let mut pixels = Vec::new();
+        make_room(&View::new(scene), 3, &mut pixels)?;
+        self.render_rgb_into(scene, &mut pixels, 3 * width as usize)?;
+        Ok(RgbImage::from_raw(width, height, pixels).unwrap_or_default())
+    }
+
+    /// Returns layers of data, a plane for each in the set's order, drawn on all threads of the current rayon pool.
+    ///
+    /// # Errors
+    /// [`RenderError::NoLight`] for colours or temperatures of a scene without, [`RenderError::Memory`].
+    pub fn render_layers(
+        &mut self,
+        scene: &Scene,
+        layers: LayerSet,
+    ) -> Result<Vec<Plane>, RenderError> {
+        let mut memory = FrameMemory::new(Form::Layers(layers));
+        self.draw(scene, &mut memory)?;
+        Ok(memory.into_planes())
+    }
+
+    /// Draws a scene into memory that is reused, in the memory's form, on all threads of the current rayon pool.
+    ///
+    /// # Errors
+    /// [`RenderError::NoLight`] for light of a scene without, [`RenderError::Memory`].
+    pub fn draw(
+        &mut self,
+        scene: &Scene,
+        memory: &mut FrameMemory,
+    ) -> Result<FrameReport, RenderError> {
+        let view = View::new(scene);
+        let form = memory.form();
+        self.draw_into(scene, &view, form, memory.target(&view)?)
+    }
+
+    /// Draws a scene's mask into a caller's memory, on all threads of the current rayon pool. Row j begins at byte
     /// `j stride`; bytes between the rows stay as they are.
     ///
     /// # Errors
@@ -85,21 +135,66 @@ impl<A: SweptAngles> Renderer<A> {
         pixels: &mut [u8],
         stride: usize,
     ) -> Result<FrameReport, RenderError> {
+        let target = Target::Grey8(pixels, stride);
+        self.draw_into(scene, &View::new(scene), Form::Grey8, target)
+    }
+
+    /// Draws a scene's picture in colour into a caller's memory, as [`Self::render_into`] does: three bytes a pixel,
+    /// row j from byte `j stride` on.
+    ///
+    /// # Errors
+    /// [`RenderError::NoLight`] for a scene without light, and those of [`Self::render_into`].
+    pub fn render_rgb_into(
+        &mut self,
+        scene: &Scene,
+        pixels: &mut [u8],
+        stride: usize,
+    ) -> Result<FrameReport, RenderError> {
+        let target = Target::Rgb8(pixels, stride);
+        self.draw_into(scene, &View::new(scene), Form::Rgb8, target)
+    }
+
+    fn draw_into(
+        &mut self,
+        scene: &Scene,
+        view: &View,
+        form: Form,
+        target: Target<'_>,
+    ) -> Result<FrameReport, RenderError> {
         let start = Instant::now();
-        let view = View::new(scene);
-        let spec = CurveSpec::new(scene, &view, scene.tolerance());
-        let kept = self.curves.take().filter(|curves| curves.serves(&spec));
-        let curves = kept.unwrap_or_else(|| Isoradials::new(&spec, &self.angles));
-        let curves = self.curves.insert(curves);
+        let spec = CurveSpec::new(scene, view, scene.tolerance());
+        if !self
+            .curves
+            .as_ref()
+            .is_some_and(|curves| curves.serves(&spec))
+        {
+            self.curves = None;
+            self.map = None;
+        }
+        let angles = &self.angles;
+        let curves = self
+            .curves
+            .get_or_insert_with(|| Isoradials::new(&spec, angles));
+        if form.needs_map() {
+            self.map
+                .get_or_insert_with(|| RadiusMap::new(curves, angles));
+        }
+        let shown = (scene.light(), scene.exposure().to_bits(), scene.tone());
+        if self.shown != Some(shown) {
+            self.shown = Some(shown);
+            self.colours = SharedColours::default();
+        }
         let frame = SceneFrame {
             scene,
-            view: &view,
+            view,
             curves,
-            angles: &self.angles,
+            map: self.map.as_ref(),
+            colours: self.colours.of(scene, form),
+            angles,
             threads: Threads::All,
         };
         let time = start.elapsed();
-        let report = frame.draw(&mut self.workspace, pixels, stride)?;
+        let report = frame.draw(&mut self.workspace, target)?;
         Ok(FrameReport {
             curves: time,
             ..report
@@ -108,7 +203,7 @@ impl<A: SweptAngles> Renderer<A> {
 }
 
 impl<A: SweptAngles> Renderer<A> {
-    /// Draws frames of an animation, side by side on all threads of the current rayon pool where there are enough. They
+    /// Draws frames of an animation in a form, side by side on all threads of the current rayon pool where there are enough. They
     /// are begun in the order of `numbers`. `done` gets each frame as it is finished, in any order and from several
     /// threads at once.
     ///
@@ -119,11 +214,12 @@ impl<A: SweptAngles> Renderer<A> {
     pub fn render_frames<E: Send>(
         &self,
         animation: &Animation,
+        form: Form,
         numbers: impl ExactSizeIterator<Item = u32> + Send,
         done: impl Fn(DrawnFrame<'_>) -> Result<(), E> + Sync,
     ) -> Result<(), E> {
         let frames = Curved::new(animation, &self.angles);
         let sharing = Sharing::fastest(numbers.len() as u64, u64::MAX);
-        batch::draw(&frames, numbers, sharing, |_| true, done)
+        batch::draw(&frames, form, numbers, sharing, |_| true, done)
     }
 }

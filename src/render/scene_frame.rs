@@ -4,8 +4,12 @@ use std::time::{Duration, Instant};
 
 use super::error::RenderError;
 use super::frame::{Threads, Workspace};
+use super::ink::{Colours, Data, Rgb8, Rgb16, Rows};
 use super::pixelwise;
-use crate::isoradial::{EdgeError, Isoradials};
+use super::planes::Target;
+use super::shaded::{ShadedFrame, rows_of_band};
+use super::shader::Shader;
+use crate::isoradial::{EdgeError, Isoradials, RadiusMap};
 use crate::orbit::path::SweptAngles;
 use crate::scene::{Scene, View};
 
@@ -27,6 +31,10 @@ pub(super) struct SceneFrame<'a, A> {
     pub(super) scene: &'a Scene,
     pub(super) view: &'a View,
     pub(super) curves: &'a Isoradials,
+    /// Where the form needs one.
+    pub(super) map: Option<&'a RadiusMap>,
+    /// Of a scene with light.
+    pub(super) colours: Option<&'a Colours>,
     pub(super) angles: &'a A,
     pub(super) threads: Threads,
 }
@@ -35,21 +43,26 @@ impl<A: SweptAngles> SceneFrame<'_, A> {
     /// Draws the frame from its curves, or ray by ray where these are not accurate enough.
     ///
     /// # Errors
-    /// [`RenderError::Buffer`]
+    /// [`RenderError::Buffer`]; [`RenderError::NoLight`] for colours of a scene without light.
     pub(super) fn draw(
         &self,
         workspace: &mut Workspace,
-        pixels: &mut [u8],
-        stride: usize,
+        target: Target<'_>,
     ) -> Result<FrameReport, RenderError> {
         let start = Instant::now();
+        target.check(self.view)?;
         let error = self.curves.error();
         let ray_by_ray = is_unresolved(error, self.scene.tolerance());
         if ray_by_ray {
-            pixelwise::render_into(self.scene, self.view, self.angles, &|| (), pixels, stride)?;
+            let frame = pixelwise::Frame {
+                scene: self.scene,
+                view: self.view,
+                orbits: self.angles,
+                colours: self.colours,
+            };
+            frame.draw(&|| (), target)?;
         } else {
-            let smooth = self.scene.antialias();
-            workspace.draw(self.view, self.curves, smooth, self.threads, pixels, stride)?;
+            self.draw_from_curves(workspace, target)?;
         }
         Ok(FrameReport {
             curves: Duration::ZERO,
@@ -57,6 +70,50 @@ impl<A: SweptAngles> SceneFrame<'_, A> {
             error,
             ray_by_ray,
         })
+    }
+
+    fn draw_from_curves(
+        &self,
+        workspace: &mut Workspace,
+        target: Target<'_>,
+    ) -> Result<(), RenderError> {
+        let (view, curves, threads) = (self.view, self.curves, self.threads);
+        let smooth = self.scene.antialias();
+        let none = RadiusMap::default();
+        let gaps = |order, h, meets| curves.u_in_gap(order, h, meets, self.angles);
+        let shader = Shader::new(view, curves, self.map.unwrap_or(&none), &gaps);
+        let how = (smooth, threads);
+        let width = view.width() as usize;
+        let rows = rows_of_band(width);
+        match target {
+            Target::Grey8(samples, stride) => {
+                return workspace.draw(view, curves, smooth, threads, samples, stride);
+            }
+            Target::Grey16(samples, stride) => {
+                return workspace.draw(view, curves, smooth, threads, samples, stride);
+            }
+            Target::Rgb8(samples, stride) => {
+                let ink = Rgb8(self.colours()?);
+                let bands = Rows::bands(samples, stride, 3 * width, rows);
+                ShadedFrame::new(workspace.for_shading(), &shader, how).paint(&ink, bands);
+            }
+            Target::Rgb16(samples, stride) => {
+                let ink = Rgb16(self.colours()?);
+                let bands = Rows::bands(samples, stride, 3 * width, rows);
+                ShadedFrame::new(workspace.for_shading(), &shader, how).paint(&ink, bands);
+            }
+            Target::Planes(planes, layers) => {
+                let ink = Data::new(layers, self.colours, self.scene.light())?;
+                let bands = Data::bands(planes, width, rows);
+                ShadedFrame::new(workspace.for_shading(), &shader, how)
+                    .paint(&ink, bands.into_iter());
+            }
+        }
+        Ok(())
+    }
+
+    fn colours(&self) -> Result<&Colours, RenderError> {
+        self.colours.ok_or(RenderError::NoLight)
     }
 }
 

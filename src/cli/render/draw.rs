@@ -3,23 +3,16 @@
 use super::super::method::Method;
 use crate::isoradial::Isoradials;
 use crate::orbit::exact::Exact;
-use crate::render::batch::{self, Curved, FrameError, Frames, RayByRay, Sharing};
-use crate::render::frame::Workspace;
+pub(super) use crate::render::batch::DrawnFrame;
+use crate::render::batch::{self, Curved, Frames, RayByRay, Sharing};
 use crate::render::needs::Needs;
-pub(super) use crate::render::{Form, FrameReport, Pixels};
+pub(super) use crate::render::{Form, FrameReport};
 use crate::scene::{Animation, Scene, View};
 
-/// Draws the frames of an animation by some method.
-pub(super) struct FrameSource<'a>(&'a dyn Frames);
-
-/// A frame of a run: drawn, or failed.
-pub(super) struct DrawnFrame<'a> {
-    /// Its number in the animation.
-    pub(super) number: u32,
-    /// The number of frames that were begun before it.
-    pub(super) place: u64,
-    /// Its pixels.
-    pub(super) pixels: Result<(Pixels<'a>, FrameReport), FrameError>,
+/// Draws the frames of an animation by some method, in some form.
+pub(super) struct FrameSource<'a> {
+    frames: &'a dyn Frames,
+    form: Form,
 }
 
 impl FrameSource<'_> {
@@ -27,17 +20,17 @@ impl FrameSource<'_> {
     /// row.
     pub(super) fn with<T>(
         animation: &Animation,
+        form: Form,
         method: &Method,
         row_done: &(dyn Fn() + Sync),
         body: impl FnOnce(&FrameSource<'_>) -> T,
     ) -> T {
+        let draw = |frames: &dyn Frames| body(&FrameSource { frames, form });
         match method {
-            Method::Table(table) => body(&FrameSource(&Curved::new(animation, &table.lookup()))),
-            Method::NoTable => body(&FrameSource(&Curved::new(animation, &Exact))),
-            Method::Exact => body(&FrameSource(&RayByRay::new(animation, &Exact, row_done))),
-            Method::Integrate(adaptive) => {
-                body(&FrameSource(&RayByRay::new(animation, adaptive, row_done)))
-            }
+            Method::Table(table) => draw(&Curved::new(animation, &table.lookup())),
+            Method::NoTable => draw(&Curved::new(animation, &Exact)),
+            Method::Exact => draw(&RayByRay::new(animation, &Exact, row_done)),
+            Method::Integrate(adaptive) => draw(&RayByRay::new(animation, adaptive, row_done)),
         }
     }
 
@@ -55,37 +48,7 @@ impl FrameSource<'_> {
         done: impl Fn(DrawnFrame<'_>) -> Result<(), E> + Sync,
     ) -> Result<(), E> {
         let sharing = Sharing::fastest(count, at_a_time);
-        batch::draw(self, numbers, sharing, wanted, |drawn| {
-            let grey = |(pixels, report)| (Pixels::Grey8(pixels), report);
-            done(DrawnFrame {
-                number: drawn.number,
-                place: drawn.place,
-                pixels: drawn.pixels.map(grey),
-            })
-        })
-    }
-}
-
-impl Frames for FrameSource<'_> {
-    fn draw(
-        &self,
-        number: u32,
-        on_all_threads: bool,
-        workspace: &mut Workspace,
-        pixels: &mut Vec<u8>,
-    ) -> Result<FrameReport, FrameError> {
-        self.0.draw(number, on_all_threads, workspace, pixels)
-    }
-}
-
-/// Checks that frames can be drawn in a form.
-///
-/// # Errors
-/// They cannot.
-pub(super) fn check(form: Form) -> anyhow::Result<()> {
-    match form {
-        Form::Grey8 => Ok(()),
-        _ => anyhow::bail!("only masks of 8 bits can be drawn, as .png, .y4m or .raw"),
+        batch::draw(self.frames, self.form, numbers, sharing, wanted, done)
     }
 }
 

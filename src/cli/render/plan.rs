@@ -12,7 +12,7 @@ use super::super::writable;
 use super::args::RenderArgs;
 use super::format::Format;
 use super::origin::FrameOrigin;
-use super::{draw, exr, ffmpeg, film, form, memory, npz, output, png, sequence};
+use super::{exr, ffmpeg, film, form, memory, npz, output, png, sequence};
 use crate::render::needs::Needs;
 use crate::render::{Form, Pixels};
 use crate::scene::{Animation, Scene};
@@ -48,7 +48,6 @@ impl<'a> Plan<'a> {
         let count = frames.count();
         let (format, destination) = output::checked(args, animation, count)?;
         let form = form::checked(args, animation, format)?;
-        draw::check(form)?;
         memory::check(args.max_memory, animation.image(), form)?;
         let needs = Needs::of_animation(animation)?;
         let needed = needs.table().map(|candidate| candidate.name);

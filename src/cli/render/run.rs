@@ -41,7 +41,7 @@ pub(super) fn run(plan: &Plan<'_>, method: &Method, report: Report) -> anyhow::R
         }
     };
     let start = Instant::now();
-    let stats = FrameSource::with(plan.animation, method, &row_done, |frames| {
+    let stats = FrameSource::with(plan.animation, plan.form, method, &row_done, |frames| {
         let origin = plan.origin(method);
         if let Destination::Sequence(pattern) = &plan.destination {
             prepare(plan, pattern, frames, &origin)?;

@@ -5,11 +5,12 @@ use std::time::Instant;
 
 use super::spans::Block;
 use super::{FrameError, Frames, locked};
-use crate::isoradial::{CurveSpec, Isoradials};
+use crate::isoradial::{CurveSpec, Isoradials, RadiusMap};
 use crate::orbit::path::SweptAngles;
 use crate::render::FrameReport;
-use crate::render::error::make_room;
 use crate::render::frame::{Threads, Workspace};
+use crate::render::ink::SharedColours;
+use crate::render::planes::FrameMemory;
 use crate::render::scene_frame::SceneFrame;
 use crate::scene::{Animation, View};
 
@@ -20,6 +21,7 @@ pub struct Curved<'a, A> {
     angles: &'a A,
     /// The block of the frame drawn last.
     block: Mutex<Option<Arc<Block>>>,
+    colours: SharedColours,
 }
 
 impl<'a, A: SweptAngles> Curved<'a, A> {
@@ -29,6 +31,7 @@ impl<'a, A: SweptAngles> Curved<'a, A> {
             animation,
             angles,
             block: Mutex::new(None),
+            colours: SharedColours::default(),
         }
     }
 
@@ -51,29 +54,37 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
         number: u32,
         on_all_threads: bool,
         workspace: &mut Workspace,
-        pixels: &mut Vec<u8>,
+        memory: &mut FrameMemory,
     ) -> Result<FrameReport, FrameError> {
         let start = Instant::now();
         let scene = self.animation.frame(number)?;
         let view = View::new(&scene);
-        make_room(&view, pixels)?;
+        let form = memory.form();
+        let target = memory.target(&view)?;
         let block = self.block(number);
-        let own;
-        let curves = match block.span(number) {
+        let (own, own_map);
+        let (curves, map) = match block.span(number) {
             Some(span) if span.is_shared() => {
                 let draw = || Isoradials::new(&span.spec, self.angles);
-                span.curves.get_or_init(draw)
+                let curves = span.curves.get_or_init(draw);
+                let map = || RadiusMap::new(curves, self.angles);
+                let map = form.needs_map().then(|| span.map.get_or_init(map));
+                (curves, map)
             }
             _ => {
                 let spec = CurveSpec::new(&scene, &view, scene.tolerance());
                 own = Isoradials::new(&spec, self.angles);
-                &own
+                let map = || RadiusMap::new(&own, self.angles);
+                own_map = form.needs_map().then(map);
+                (&own, own_map.as_ref())
             }
         };
         let frame = SceneFrame {
             scene: &scene,
             view: &view,
             curves,
+            map,
+            colours: self.colours.of(&scene, form),
             angles: self.angles,
             threads: if on_all_threads {
                 Threads::All
@@ -82,7 +93,7 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
             },
         };
         let time = start.elapsed();
-        let report = frame.draw(workspace, pixels, view.width() as usize)?;
+        let report = frame.draw(workspace, target)?;
         Ok(FrameReport {
             curves: time,
             ..report

@@ -12,6 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::frame::Workspace;
+use super::planes::{Form, FrameMemory, Pixels};
 use super::{FrameReport, RenderError};
 use crate::scene::SceneError;
 pub use curved::Curved;
@@ -43,8 +44,8 @@ impl Sharing {
 
 /// Draws any frame of an animation.
 pub trait Frames: Sync {
-    /// Draws frame `number` into `pixels`, row by row from the top, on this thread alone or on all threads of the
-    /// current rayon pool.
+    /// Draws frame `number` into `memory`, in its form, on this thread alone or on all threads of the current rayon
+    /// pool.
     ///
     /// # Errors
     /// [`FrameError`] if there is no such frame, or if it cannot be drawn.
@@ -53,7 +54,7 @@ pub trait Frames: Sync {
         number: u32,
         on_all_threads: bool,
         workspace: &mut Workspace,
-        pixels: &mut Vec<u8>,
+        memory: &mut FrameMemory,
     ) -> Result<FrameReport, FrameError>;
 }
 
@@ -76,10 +77,10 @@ pub struct DrawnFrame<'a> {
     /// The number of frames that were begun before it.
     pub place: u64,
     /// Its pixels, row by row from the top.
-    pub pixels: Result<(&'a [u8], FrameReport), FrameError>,
+    pub pixels: Result<(Pixels<'a>, FrameReport), FrameError>,
 }
 
-/// Draws frames on all threads of the current rayon pool. Frames are begun in order. Each is passed to `done` as soon
+/// Draws frames in a form, on all threads of the current rayon pool. Frames are begun in order. Each is passed to `done` as soon
 /// as it is finished, so in any order and from several threads at once. Frames that are not `wanted` are skipped.
 ///
 /// It takes the memory of one frame, or of one a thread if they are drawn side by side.
@@ -87,7 +88,8 @@ pub struct DrawnFrame<'a> {
 /// # Errors
 /// Returns the first error of `done`. No more frames are begun after it.
 pub fn draw<E: Send>(
-    frames: &impl Frames,
+    frames: &(impl Frames + ?Sized),
+    form: Form,
     numbers: impl Iterator<Item = u32> + Send,
     sharing: Sharing,
     wanted: impl Fn(u32) -> bool + Sync,
@@ -97,7 +99,7 @@ pub fn draw<E: Send>(
     let numbers = Mutex::new(numbers.zip(0..));
     let failed = AtomicBool::new(false);
     let worker = || {
-        let (mut workspace, mut pixels) = (Workspace::default(), Vec::new());
+        let (mut workspace, mut memory) = (Workspace::default(), FrameMemory::new(form));
         while !failed.load(Ordering::Relaxed) {
             let Some((number, place)) = locked(&numbers).next() else {
                 break;
@@ -105,11 +107,11 @@ pub fn draw<E: Send>(
             if !wanted(number) {
                 continue;
             }
-            let effort = frames.draw(number, !side_by_side, &mut workspace, &mut pixels);
+            let effort = frames.draw(number, !side_by_side, &mut workspace, &mut memory);
             let drawn = DrawnFrame {
                 number,
                 place,
-                pixels: effort.map(|effort| (pixels.as_slice(), effort)),
+                pixels: effort.map(|effort| (memory.pixels(), effort)),
             };
             if let Err(error) = done(drawn) {
                 failed.store(true, Ordering::Relaxed);

@@ -5,6 +5,8 @@ use std::time::Instant;
 use super::{FrameError, Frames};
 use crate::orbit::Orbits;
 use crate::render::frame::Workspace;
+use crate::render::ink::SharedColours;
+use crate::render::planes::FrameMemory;
 use crate::render::{FrameReport, pixelwise};
 use crate::scene::{Animation, View};
 
@@ -13,6 +15,7 @@ pub struct RayByRay<'a, O> {
     animation: &'a Animation,
     orbits: &'a O,
     row_done: &'a (dyn Fn() + Sync),
+    colours: SharedColours,
 }
 
 impl<'a, O: Orbits> RayByRay<'a, O> {
@@ -22,6 +25,7 @@ impl<'a, O: Orbits> RayByRay<'a, O> {
             animation,
             orbits,
             row_done,
+            colours: SharedColours::default(),
         }
     }
 }
@@ -32,12 +36,19 @@ impl<O: Orbits> Frames for RayByRay<'_, O> {
         number: u32,
         _: bool,
         _: &mut Workspace,
-        pixels: &mut Vec<u8>,
+        memory: &mut FrameMemory,
     ) -> Result<FrameReport, FrameError> {
         let start = Instant::now();
         let scene = self.animation.frame(number)?;
         let view = View::new(&scene);
-        *pixels = pixelwise::render(&scene, &view, self.orbits, self.row_done)?;
+        let form = memory.form();
+        let frame = pixelwise::Frame {
+            scene: &scene,
+            view: &view,
+            orbits: self.orbits,
+            colours: self.colours.of(&scene, form),
+        };
+        frame.draw(self.row_done, memory.target(&view)?)?;
         Ok(FrameReport {
             pixels: start.elapsed(),
             ..FrameReport::default()

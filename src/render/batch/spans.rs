@@ -5,7 +5,7 @@
 
 use std::sync::OnceLock;
 
-use crate::isoradial::{CurveSpec, Isoradials};
+use crate::isoradial::{CurveSpec, Isoradials, RadiusMap};
 use crate::scene::{Animation, View};
 
 /// The number of frames in a block.
@@ -31,6 +31,8 @@ pub(super) struct Span {
     pub(super) spec: CurveSpec,
     /// The curves, built when a frame first needs them.
     pub(super) curves: OnceLock<Isoradials>,
+    /// Their map, built when a frame with light or data first needs it.
+    pub(super) map: OnceLock<RadiusMap>,
 }
 
 impl Block {
@@ -66,6 +68,7 @@ impl Block {
                     last: number,
                     spec,
                     curves: OnceLock::new(),
+                    map: OnceLock::new(),
                 });
             }
         }

@@ -1,0 +1,654 @@
+//! What is painted: colours or data, into which memory.
+
+use core::f64::consts::{PI, TAU};
+use std::sync::OnceLock;
+
+use super::error::RenderError;
+use super::mixture::Mixture;
+use super::patch::Patch;
+use super::planes::{Form, Plane};
+use super::shader::{PlaceRay, Shader};
+use crate::light::{DisplayTransform, Palette, Radiance, RadianceTable, Sight, flux};
+use crate::scene::{Layer, LayerSet, Light, Scene, Tone};
+
+/// An order's share of a pixel.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Part {
+    pub(super) order: u32,
+    pub(super) share: f32,
+}
+
+/// Paints pixels of one kind.
+pub(super) trait Ink: Sync {
+    /// The memory of a band of rows.
+    type Band<'b>;
+
+    /// Fills a band with what is seen where there is no disk.
+    fn clear(&self, band: &mut Self::Band<'_>);
+
+    /// How many quantities are interpolated, at most 8.
+    fn quantities(&self) -> usize;
+
+    /// How far they may be off, as a share of their size.
+    fn tolerance(&self) -> f64;
+
+    /// The degree of the polynomials.
+    fn degree(&self) -> usize {
+        6
+    }
+
+    /// Computes the quantities of a ray that meets the disk at u.
+    fn evaluate(&self, shader: &Shader<'_>, order: u32, u: f64, ray: &PlaceRay, values: &mut [f64]);
+
+    /// The quantity that is an angle, if there is one.
+    fn kept(&self, values: &[f64]) -> f64 {
+        let _ = values;
+        0.0
+    }
+
+    /// Makes angles continuous with the one `kept`.
+    fn unwrap(&self, values: &mut [f64], kept: &f64) {
+        let _ = (values, kept);
+    }
+
+    /// Paints pixels of one row, wholly covered, from a patch.
+    #[expect(clippy::too_many_arguments, reason = "what, where, and from what")]
+    fn put_row(
+        &self,
+        band: &mut Self::Band<'_>,
+        shader: &Shader<'_>,
+        order: u32,
+        row: usize,
+        columns: (usize, usize),
+        patch: &Patch,
+        y: f64,
+    );
+
+    /// Paints one pixel, wholly covered.
+    fn put(
+        &self,
+        band: &mut Self::Band<'_>,
+        shader: &Shader<'_>,
+        order: u32,
+        row: usize,
+        column: usize,
+        values: &[f64],
+    );
+
+    /// Paints a pixel that is covered in part.
+    fn put_mixture(
+        &self,
+        band: &mut Self::Band<'_>,
+        shader: &Shader<'_>,
+        row: usize,
+        column: usize,
+        parts: &[Part],
+        mixture: &Mixture<'_>,
+    );
+}
+
+/// The amplitude of what a ray sees.
+pub(super) fn amplitude(sight: &Sight) -> f64 {
+    sight.redshift * sight.redshift * flux::signed_root(sight.u)
+}
+
+/// How light becomes colours.
+#[derive(Debug)]
+pub(super) struct Colours {
+    pub(super) radiance: RadianceTable,
+    pub(super) display: DisplayTransform,
+    pub(super) palette: Palette,
+}
+
+impl Colours {
+    /// Prepares the colours of a scene with light.
+    pub(super) fn new(light: Light, exposure: f64, tone: Tone) -> Self {
+        let radiance = RadianceTable::new(&Radiance::new(light));
+        let display = DisplayTransform::new(exposure, tone);
+        Self {
+            palette: Palette::new(&radiance, &display),
+            radiance,
+            display,
+        }
+    }
+
+    /// The linear light of a pixel that is covered in part.
+    fn mixed(&self, parts: &[Part], mixture: &Mixture<'_>) -> [f32; 3] {
+        let mut sum = [0.0; 3];
+        for part in parts {
+            let mean = mixture.mean(part.order, f64::from(part.share), |y| {
+                self.radiance.rgb(y as f32)
+            });
+            for (sum, c) in sum.iter_mut().zip(mean) {
+                *sum += part.share * c;
+            }
+        }
+        sum
+    }
+}
+
+/// The colours of an animation, computed when a frame first needs them: light, exposure and tone are those of all its
+/// frames.
+#[derive(Debug, Default)]
+pub(super) struct SharedColours(OnceLock<Colours>);
+
+impl SharedColours {
+    /// The colours of a scene, where it has light and the form shows it.
+    pub(super) fn of(&self, scene: &Scene, form: Form) -> Option<&Colours> {
+        let light = scene.light()?;
+        let new = || Colours::new(light, scene.exposure(), scene.tone());
+        form.shows_light().then(|| self.0.get_or_init(new))
+    }
+}
+
+/// The amplitude of a ray.
+fn evaluate_amplitude(shader: &Shader<'_>, u: f64, ray: &PlaceRay, values: &mut [f64]) {
+    values[0] = shader.amplitude(u, shader.lambda(ray));
+}
+
+/// How far an amplitude may be off for colours of 8 bits: 1/20 of a code where light rises with the tenth power of it.
+const COLOUR_TOLERANCE: f64 = 2e-5;
+
+/// How far data may be off.
+const DATA_TOLERANCE: f64 = 2e-8;
+
+/// Colours of 8 bits.
+pub(super) struct Rgb8<'a>(pub(super) &'a Colours);
+
+/// A band's memory: rows of samples, some distance apart.
+pub(super) struct Rows<'b, T> {
+    pub(super) samples: &'b mut [T],
+    pub(super) stride: usize,
+    /// The samples of a row.
+    pub(super) width: usize,
+}
+
+impl<'b, T: Copy + Default> Rows<'b, T> {
+    /// Splits memory, whose rows of `width` samples are `stride` apart, into bands of `rows` rows.
+    pub(super) fn bands(
+        samples: &'b mut [T],
+        stride: usize,
+        width: usize,
+        rows: usize,
+    ) -> impl Iterator<Item = Self> {
+        let bands = samples.chunks_mut(stride.saturating_mul(rows));
+        bands.map(move |samples| Self {
+            samples,
+            stride,
+            width,
+        })
+    }
+
+    fn clear(&mut self) {
+        for row in self.samples.chunks_mut(self.stride) {
+            let width = self.width.min(row.len());
+            row[..width].fill(T::default());
+        }
+    }
+
+    #[inline(always)]
+    fn pixels(&mut self, row: usize, from: usize, to: usize) -> &mut [[T; 3]] {
+        let row = &mut self.samples[row * self.stride..];
+        row[3 * from..3 * to].as_chunks_mut::<3>().0
+    }
+}
+
+impl Ink for Rgb8<'_> {
+    type Band<'b> = Rows<'b, u8>;
+
+    fn clear(&self, band: &mut Self::Band<'_>) {
+        band.clear();
+    }
+
+    fn quantities(&self) -> usize {
+        1
+    }
+
+    fn tolerance(&self) -> f64 {
+        COLOUR_TOLERANCE
+    }
+
+    fn evaluate(&self, shader: &Shader<'_>, _: u32, u: f64, ray: &PlaceRay, values: &mut [f64]) {
+        evaluate_amplitude(shader, u, ray, values);
+    }
+
+    fn put_row(
+        &self,
+        band: &mut Self::Band<'_>,
+        _: &Shader<'_>,
+        _: u32,
+        row: usize,
+        (from, to): (usize, usize),
+        patch: &Patch,
+        y: f64,
+    ) {
+        let mut pixels = band.pixels(row, from, to).iter_mut();
+        let palette = &self.0.palette;
+        patch.row(0, y).for_lanes(from, to, |_, amplitudes| {
+            for (amplitude, pixel) in amplitudes.iter().zip(&mut pixels) {
+                let [r, g, b, _] = palette.rgb8(*amplitude);
+                *pixel = [r, g, b];
+            }
+        });
+    }
+
+    fn put(
+        &self,
+        band: &mut Self::Band<'_>,
+        _: &Shader<'_>,
+        _: u32,
+        row: usize,
+        column: usize,
+        values: &[f64],
+    ) {
+        let [r, g, b, _] = self.0.palette.rgb8(values[0] as f32);
+        band.pixels(row, column, column + 1)[0] = [r, g, b];
+    }
+
+    fn put_mixture(
+        &self,
+        band: &mut Self::Band<'_>,
+        _: &Shader<'_>,
+        row: usize,
+        column: usize,
+        parts: &[Part],
+        mixture: &Mixture<'_>,
+    ) {
+        let light = self.0.mixed(parts, mixture);
+        band.pixels(row, column, column + 1)[0] = self.0.display.rgb8(light);
+    }
+}
+
+/// Colours of 16 bits.
+pub(super) struct Rgb16<'a>(pub(super) &'a Colours);
+
+impl Ink for Rgb16<'_> {
+    type Band<'b> = Rows<'b, u16>;
+
+    fn clear(&self, band: &mut Self::Band<'_>) {
+        band.clear();
+    }
+
+    fn quantities(&self) -> usize {
+        1
+    }
+
+    fn tolerance(&self) -> f64 {
+        COLOUR_TOLERANCE / 256.0
+    }
+
+    fn evaluate(&self, shader: &Shader<'_>, _: u32, u: f64, ray: &PlaceRay, values: &mut [f64]) {
+        evaluate_amplitude(shader, u, ray, values);
+    }
+
+    fn put_row(
+        &self,
+        band: &mut Self::Band<'_>,
+        _: &Shader<'_>,
+        _: u32,
+        row: usize,
+        (from, to): (usize, usize),
+        patch: &Patch,
+        y: f64,
+    ) {
+        let pixels = band.pixels(row, from, to);
+        patch.row(0, y).for_each(from, to, |column, amplitude| {
+            let light = self.0.radiance.rgb(amplitude as f32);
+            pixels[column - from] = self.0.display.rgb16(light);
+        });
+    }
+
+    fn put(
+        &self,
+        band: &mut Self::Band<'_>,
+        _: &Shader<'_>,
+        _: u32,
+        row: usize,
+        column: usize,
+        values: &[f64],
+    ) {
+        let light = self.0.radiance.rgb(values[0] as f32);
+        band.pixels(row, column, column + 1)[0] = self.0.display.rgb16(light);
+    }
+
+    fn put_mixture(
+        &self,
+        band: &mut Self::Band<'_>,
+        _: &Shader<'_>,
+        row: usize,
+        column: usize,
+        parts: &[Part],
+        mixture: &Mixture<'_>,
+    ) {
+        let light = self.0.mixed(parts, mixture);
+        band.pixels(row, column, column + 1)[0] = self.0.display.rgb16(light);
+    }
+}
+
+/// Layers of data.
+pub(super) struct Data<'a> {
+    /// Those that are interpolated: what is asked for, without coverage and order.
+    quantities: Vec<Quantity>,
+    layers: LayerSet,
+    /// Of a scene with light.
+    colours: Option<&'a Colours>,
+    /// The temperature of the hottest ring.
+    temperature: f64,
+}
+
+/// What is interpolated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Quantity {
+    Radius,
+    Azimuth,
+    Redshift,
+    EmissionCosine,
+    /// For temperature and colour.
+    Amplitude,
+}
+
+/// A band of each layer.
+pub(super) struct PlaneRows<'b> {
+    pub(super) planes: Vec<(Layer, &'b mut [f32])>,
+    pub(super) width: usize,
+}
+
+impl<'a> Data<'a> {
+    /// # Errors
+    /// [`RenderError::NoLight`] for colours or temperatures of a scene without light.
+    pub(super) fn new(
+        layers: LayerSet,
+        colours: Option<&'a Colours>,
+        light: Option<Light>,
+    ) -> Result<Self, RenderError> {
+        let has_light = match light {
+            None => !layers.has(Layer::Temperature) && !layers.has(Layer::Colour),
+            Some(Light::Bolometric) => !layers.has(Layer::Temperature),
+            Some(Light::BlackBody { .. }) => true,
+        };
+        if !has_light {
+            return Err(RenderError::NoLight);
+        }
+        let temperature = match light {
+            Some(Light::BlackBody { temperature }) => temperature,
+            _ => 0.0,
+        };
+        let needs = [
+            (Quantity::Radius, layers.has(Layer::Radius)),
+            (Quantity::Azimuth, layers.has(Layer::Azimuth)),
+            (Quantity::Redshift, layers.has(Layer::Redshift)),
+            (Quantity::EmissionCosine, layers.has(Layer::EmissionCosine)),
+            (
+                Quantity::Amplitude,
+                layers.has(Layer::Temperature) || layers.has(Layer::Colour),
+            ),
+        ];
+        let needed = needs.into_iter().filter(|(_, is_needed)| *is_needed);
+        Ok(Self {
+            quantities: needed.map(|(quantity, _)| quantity).collect(),
+            layers,
+            colours,
+            temperature,
+        })
+    }
+
+    /// Splits planes into bands of rows.
+    pub(super) fn bands<'b>(
+        planes: &'b mut [Plane],
+        width: usize,
+        rows: usize,
+    ) -> Vec<PlaneRows<'b>> {
+        let mut bands: Vec<PlaneRows<'b>> = Vec::new();
+        for plane in planes {
+            let layer = plane.layer;
+            let parts = plane.values.chunks_mut(width * rows * layer.channels());
+            for (i, part) in parts.enumerate() {
+                if bands.len() <= i {
+                    bands.push(PlaneRows {
+                        planes: Vec::new(),
+                        width,
+                    });
+                }
+                bands[i].planes.push((layer, part));
+            }
+        }
+        bands
+    }
+
+    /// Sets a pixel of every layer to what a ray sees.
+    pub(super) fn set_sight(&self, band: &mut PlaneRows<'_>, pixel: usize, sight: &Sight) {
+        let mut values = [0.0; 8];
+        for (value, quantity) in values.iter_mut().zip(&self.quantities) {
+            *value = match quantity {
+                Quantity::Radius => 1.0 / sight.u,
+                Quantity::Azimuth => sight.azimuth,
+                Quantity::Redshift => sight.redshift,
+                Quantity::EmissionCosine => sight.emission_cosine,
+                Quantity::Amplitude => amplitude(sight),
+            };
+        }
+        self.set(band, sight.order, pixel, &values);
+    }
+
+    /// Sets a pixel that sees no disk.
+    pub(super) fn set_hidden(&self, band: &mut PlaneRows<'_>, pixel: usize, is_captured: bool) {
+        for (layer, plane) in &mut band.planes {
+            if *layer == Layer::Alpha && is_captured {
+                plane[pixel] = 1.0;
+            }
+        }
+    }
+
+    fn place_of(&self, quantity: Quantity) -> Option<usize> {
+        self.quantities.iter().position(|&q| q == quantity)
+    }
+
+    /// The quantity of a layer.
+    fn of(layer: Layer) -> Option<Quantity> {
+        match layer {
+            Layer::Radius => Some(Quantity::Radius),
+            Layer::Azimuth => Some(Quantity::Azimuth),
+            Layer::Redshift => Some(Quantity::Redshift),
+            Layer::EmissionCosine => Some(Quantity::EmissionCosine),
+            Layer::Temperature | Layer::Colour => Some(Quantity::Amplitude),
+            Layer::Coverage | Layer::Order | Layer::Alpha => None,
+        }
+    }
+
+    /// Sets a pixel of every layer that holds data of a ray.
+    fn set(&self, band: &mut PlaneRows<'_>, order: u32, pixel: usize, values: &[f64]) {
+        for (layer, plane) in &mut band.planes {
+            let value = Self::of(*layer)
+                .and_then(|quantity| self.place_of(quantity))
+                .map(|place| values[place]);
+            match (*layer, value) {
+                (Layer::Coverage | Layer::Alpha, _) => plane[pixel] = 1.0,
+                (Layer::Order, _) => plane[pixel] = order as f32,
+                (Layer::Azimuth, Some(azimuth)) => plane[pixel] = turned(azimuth),
+                (Layer::Temperature, Some(y)) => plane[pixel] = self.kelvin(y),
+                (Layer::Colour, Some(y)) => {
+                    let rgb = self
+                        .colours
+                        .map_or([0.0; 3], |colours| colours.radiance.rgb(y as f32));
+                    plane[3 * pixel..][..3].copy_from_slice(&rgb);
+                }
+                (_, Some(value)) => plane[pixel] = value as f32,
+                (_, None) => {}
+            }
+        }
+    }
+
+    fn kelvin(&self, amplitude: f64) -> f32 {
+        (self.temperature * amplitude.max(0.0).sqrt()) as f32
+    }
+}
+
+/// An angle as a float within 0 and 2π.
+fn turned(angle: f64) -> f32 {
+    let angle = if angle < 0.0 {
+        angle + TAU
+    } else if angle >= TAU {
+        angle - TAU
+    } else {
+        angle
+    };
+    angle as f32
+}
+
+impl Ink for Data<'_> {
+    type Band<'b> = PlaneRows<'b>;
+
+    fn clear(&self, band: &mut Self::Band<'_>) {
+        for (layer, plane) in &mut band.planes {
+            plane.fill(layer.nothing());
+        }
+    }
+
+    fn quantities(&self) -> usize {
+        self.quantities.len()
+    }
+
+    fn tolerance(&self) -> f64 {
+        DATA_TOLERANCE
+    }
+
+    fn degree(&self) -> usize {
+        8
+    }
+
+    fn evaluate(
+        &self,
+        shader: &Shader<'_>,
+        order: u32,
+        u: f64,
+        ray: &PlaceRay,
+        values: &mut [f64],
+    ) {
+        let momentum = shader.geometry.angular_momentum(ray.ray);
+        let g = shader.redshift(u, momentum.along);
+        for (value, quantity) in values.iter_mut().zip(&self.quantities) {
+            *value = match quantity {
+                Quantity::Radius => 1.0 / u,
+                Quantity::Azimuth => shader.geometry.azimuth(ray.ray, shader.told(order)),
+                Quantity::Redshift => g,
+                Quantity::EmissionCosine => {
+                    crate::light::emission_cosine(u, momentum.across, momentum.along)
+                }
+                Quantity::Amplitude => g * g * flux::signed_root(u),
+            };
+        }
+    }
+
+    fn kept(&self, values: &[f64]) -> f64 {
+        self.place_of(Quantity::Azimuth)
+            .map_or(0.0, |place| values[place])
+    }
+
+    fn unwrap(&self, values: &mut [f64], kept: &f64) {
+        if let Some(place) = self.place_of(Quantity::Azimuth) {
+            let turn = values[place] - kept;
+            if turn > PI {
+                values[place] -= TAU;
+            } else if turn < -PI {
+                values[place] += TAU;
+            }
+        }
+    }
+
+    fn put_row(
+        &self,
+        band: &mut Self::Band<'_>,
+        shader: &Shader<'_>,
+        order: u32,
+        row: usize,
+        (from, to): (usize, usize),
+        patch: &Patch,
+        y: f64,
+    ) {
+        let (outer, inner) = shader.u_edges;
+        let (least, greatest) = (1.0 / inner, 1.0 / outer);
+        let first = row * band.width;
+        for (layer, plane) in &mut band.planes {
+            let pixels = &mut plane[(first + from) * layer.channels()..];
+            let pixels = &mut pixels[..(to - from) * layer.channels()];
+            let place = Self::of(*layer).and_then(|quantity| self.place_of(quantity));
+            let Some(place) = place else {
+                match layer {
+                    Layer::Order => pixels.fill(shader.told(order) as f32),
+                    _ => pixels.fill(1.0),
+                }
+                continue;
+            };
+            let polynomial = patch.row(place, y);
+            match layer {
+                Layer::Radius => polynomial.for_each(from, to, |column, r| {
+                    pixels[column - from] = r.clamp(least, greatest) as f32;
+                }),
+                Layer::Azimuth => polynomial.for_each(from, to, |column, azimuth| {
+                    pixels[column - from] = turned(azimuth);
+                }),
+                Layer::Temperature => polynomial.for_each(from, to, |column, amplitude| {
+                    pixels[column - from] = self.kelvin(amplitude);
+                }),
+                Layer::Colour => polynomial.for_each(from, to, |column, amplitude| {
+                    let rgb = self
+                        .colours
+                        .map_or([0.0; 3], |colours| colours.radiance.rgb(amplitude as f32));
+                    pixels[3 * (column - from)..][..3].copy_from_slice(&rgb);
+                }),
+                _ => polynomial.for_each(from, to, |column, value| {
+                    pixels[column - from] = value as f32;
+                }),
+            }
+        }
+    }
+
+    fn put(
+        &self,
+        band: &mut Self::Band<'_>,
+        shader: &Shader<'_>,
+        order: u32,
+        row: usize,
+        column: usize,
+        values: &[f64],
+    ) {
+        let pixel = row * band.width + column;
+        self.set(band, shader.told(order), pixel, values);
+    }
+
+    fn put_mixture(
+        &self,
+        band: &mut Self::Band<'_>,
+        shader: &Shader<'_>,
+        row: usize,
+        column: usize,
+        parts: &[Part],
+        mixture: &Mixture<'_>,
+    ) {
+        let pixel = row * band.width + column;
+        if let Some((order, ray)) = mixture.nearest_covered() {
+            let mut values = [0.0; 8];
+            if !self.quantities.is_empty() {
+                let u = shader.u_on_disk(order, &ray);
+                self.evaluate(shader, order, u, &ray, &mut values);
+            }
+            self.set(band, shader.told(order), pixel, &values);
+        }
+        let share = parts.iter().map(|part| part.share).sum::<f32>().min(1.0);
+        let light = match self.colours {
+            Some(colours) if self.layers.has(Layer::Colour) => colours.mixed(parts, mixture),
+            _ => [0.0; 3],
+        };
+        for (layer, plane) in &mut band.planes {
+            match layer {
+                Layer::Coverage => plane[pixel] = share,
+                Layer::Alpha => {
+                    let shadow = mixture.shadow() as f32;
+                    plane[pixel] = share + (1.0 - share) * shadow;
+                }
+                Layer::Colour => plane[3 * pixel..][..3].copy_from_slice(&light),
+                _ => {}
+            }
+        }
+    }
+}

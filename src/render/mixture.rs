@@ -1,0 +1,283 @@
+//! What a partly covered pixel shows: the mean over the covered part of its square.
+//!
+//! # Derivation
+//! Within a pixel what an order shows changes across its edges, and hardly along them. So the mean is taken along one
+//! line through the pixel's centre, at a right angle to the nearest edge, with the length of the square's section there
+//! as weight: a trapezium. Edges are where `f = h − h_edge(x)` is 0, with `h = κ − κ_c`; to first order an edge is at
+//! the distance `−f/|∇f|` from the centre. How much of the square is covered is known exactly from the cells. Where
+//! the line tells something else, the edges are too bent for it, and the mean is that of places all over the square.
+
+use super::shader::{PlaceRay, Shader};
+
+/// The most boundaries at one azimuth: two for each order.
+const MOST: usize = 28;
+
+/// The line may be this far from the true share.
+const WRONG: f64 = 0.1;
+
+/// Places along each side of a pixel where the line is not enough.
+const SIDE: usize = 6;
+
+/// A boundary near a pixel.
+#[derive(Debug, Clone, Copy, Default)]
+struct Near {
+    /// `κ − κ_c` on it at the pixel's x.
+    h: f64,
+    /// How far it is from the pixel's centre, towards the hole's direction, in pixels.
+    distance: f64,
+    /// The unit vector towards the hole's direction, at a right angle to it.
+    normal: (f64, f64),
+    below: Option<u32>,
+    above: Option<u32>,
+}
+
+/// The boundaries about the centre of a pixel, by rising κ.
+pub(super) struct Mixture<'a> {
+    shader: &'a Shader<'a>,
+    place: (f64, f64),
+    pub(super) ray: PlaceRay,
+    near: [Near; MOST],
+    count: usize,
+}
+
+/// Nodes and weights of Gauss and Legendre's quadrature over −1 to 1.
+const TWO: [(f64, f64); 2] = [
+    (-0.577_350_269_189_625_8, 1.0),
+    (0.577_350_269_189_625_8, 1.0),
+];
+const FIVE: [(f64, f64); 5] = [
+    (-0.906_179_845_938_664, 0.236_926_885_056_189_1),
+    (-0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
+    (0.0, 0.568_888_888_888_888_9),
+    (0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
+    (0.906_179_845_938_664, 0.236_926_885_056_189_1),
+];
+
+/// The section of a pixel's square across a direction.
+#[derive(Clone, Copy)]
+struct Section {
+    /// From the centre to the farthest corner, and to the nearer corner.
+    far: f64,
+    near: f64,
+}
+
+impl Section {
+    fn new((x, y): (f64, f64)) -> Self {
+        let (x, y) = (x.abs(), y.abs());
+        Self {
+            far: 0.5 * (x + y),
+            near: 0.5 * (x - y).abs(),
+        }
+    }
+
+    /// The relative length at a distance from the centre.
+    fn length(self, distance: f64) -> f64 {
+        let beyond = distance.abs() - self.near;
+        if beyond <= 0.0 {
+            1.0
+        } else {
+            (1.0 - beyond / (self.far - self.near)).max(0.0)
+        }
+    }
+
+    /// The share of the square below a distance.
+    fn share_below(self, distance: f64) -> f64 {
+        let t = distance.clamp(-self.far, self.far);
+        let beyond = (t.abs() - self.near).max(0.0);
+        let slope = self.far - self.near;
+        let missing = if slope > 0.0 {
+            0.5 * beyond * beyond / slope
+        } else {
+            0.0
+        };
+        let half = (t.abs() - missing) / (self.far + self.near);
+        0.5 + half.copysign(t)
+    }
+}
+
+impl<'a> Mixture<'a> {
+    /// Prepares the pixel with its centre at a place.
+    pub(super) fn new(shader: &'a Shader<'a>, place: (f64, f64)) -> Self {
+        let ray = shader.ray(place);
+        let view = shader.view;
+        let side = view.pixel_side();
+        let (z, ta, tb) = (view.z(), view.ta(), view.tb());
+        let s = ray.s;
+        let kappa = ray.ray.z / s;
+        let (n_p, d_a) = (view.n_p().abs(), view.plane_slope());
+        let (n, d) = (n_p * s, d_a * ray.ray.ta);
+        let total = n + d.abs();
+        let gradient = |z: f64, ta: f64, tb: f64| {
+            let s_change = (ray.ray.ta * ta + ray.ray.tb * tb) / s;
+            let (n_change, d_change) = (n_p * s_change, d_a * ta);
+            let d_size_change = d_change.abs() * (d * d_change).signum();
+            // x = N/(N + D) ahead, |D|/(N + |D|) beyond.
+            let x_change = if d < 0.0 {
+                (n * d_size_change - d.abs() * n_change) / (total * total)
+            } else {
+                (d * n_change - n * d_size_change) / (total * total)
+            };
+            ((z - kappa * s_change) / s, x_change)
+        };
+        let along_x = gradient(z.per_x * side, ta.per_x * side, tb.per_x * side);
+        let along_y = gradient(-z.per_y * side, -ta.per_y * side, -tb.per_y * side);
+        let mut mixture = Self {
+            shader,
+            place,
+            ray,
+            near: [Near::default(); MOST],
+            count: 0,
+        };
+        let x = ray.meets.x;
+        let sectors = shader.curves.sectors(ray.meets.quarter);
+        let sector = sectors
+            .iter()
+            .find(|sector| x <= sector.x.1)
+            .or(sectors.last());
+        let pieces = shader.curves.quarter(ray.meets.quarter);
+        for boundary in sector.map_or(&[][..], |sector| &sector.boundaries) {
+            let piece = &pieces[boundary.piece];
+            let [kept, kept_slope] = piece.value_and_slope(boundary.edge, x);
+            let (h, slope) = if piece.has_pole() {
+                (kept / x, (kept_slope - kept / x) / x)
+            } else {
+                (kept, kept_slope)
+            };
+            let (down, across) = (along_y.0 - slope * along_y.1, along_x.0 - slope * along_x.1);
+            let size = (down * down + across * across).sqrt();
+            let distance = (h - ray.h) / size;
+            if mixture.count < MOST && distance.is_finite() {
+                mixture.near[mixture.count] = Near {
+                    h,
+                    distance,
+                    normal: (across / size, down / size),
+                    below: boundary.below,
+                    above: boundary.above,
+                };
+                mixture.count += 1;
+            }
+        }
+        mixture
+    }
+
+    fn near(&self) -> &[Near] {
+        &self.near[..self.count]
+    }
+
+    fn nearest(&self) -> Option<&Near> {
+        let near = self.near().iter();
+        near.min_by(|a, b| a.distance.abs().total_cmp(&b.distance.abs()))
+    }
+
+    /// Returns the mean of what an order shows over its part of the square, which is `share`. `colour` is of an
+    /// amplitude.
+    pub(super) fn mean(
+        &self,
+        order: u32,
+        share: f64,
+        colour: impl Fn(f64) -> [f32; 3],
+    ) -> [f32; 3] {
+        let Some(nearest) = self.nearest() else {
+            return self.spread(order, colour);
+        };
+        let section = Section::new(nearest.normal);
+        let lambda = self.shader.lambda(&self.ray);
+        let u_at = self.shader.u_along(order, &self.ray);
+        let mut sum = [0.0; 3];
+        let (mut weights, mut covered) = (0.0, 0.0);
+        for pair in self.near().windows(2) {
+            let (low, high) = (&pair[0], &pair[1]);
+            if low.above != Some(order) {
+                continue;
+            }
+            let (from, to) = (
+                low.distance.max(-section.far),
+                high.distance.min(section.far),
+            );
+            if from >= to {
+                continue;
+            }
+            covered += section.share_below(to) - section.share_below(from);
+            let per_pixel = (high.h - low.h) / (high.distance - low.distance);
+            let is_thin = to - from > 0.25 * (high.distance - low.distance);
+            let nodes = if is_thin { &FIVE[..] } else { &TWO[..] };
+            let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+            for (node, weight) in nodes {
+                let t = middle + half * node;
+                let weight = (weight * half * section.length(t)) as f32;
+                let h = low.h + (t - low.distance) * per_pixel;
+                let rgb = colour(self.shader.amplitude(u_at(h), lambda));
+                for (sum, c) in sum.iter_mut().zip(rgb) {
+                    *sum += weight * c;
+                }
+                weights += weight;
+            }
+        }
+        if (covered - share).abs() > WRONG || weights <= 0.0 {
+            return self.spread(order, colour);
+        }
+        sum.map(|c| c / weights)
+    }
+
+    /// Returns the mean over places all over the square that see the order, or what its nearest edge shows.
+    #[cold]
+    fn spread(&self, order: u32, colour: impl Fn(f64) -> [f32; 3]) -> [f32; 3] {
+        let shader = self.shader;
+        let mut sum = [0.0; 3];
+        let mut count = 0.0;
+        for i in 0..SIDE * SIDE {
+            let offset = |i: usize| (i as f64 + 0.5) / SIDE as f64 - 0.5;
+            let place = (
+                self.place.0 + offset(i % SIDE),
+                self.place.1 + offset(i / SIDE),
+            );
+            let ray = shader.ray(place);
+            if ray.s > 0.0 && shader.front(&ray) == Some(order) {
+                let u = shader.u_on_disk(order, &ray);
+                let rgb = colour(shader.amplitude(u, shader.lambda(&ray)));
+                for (sum, c) in sum.iter_mut().zip(rgb) {
+                    *sum += c;
+                }
+                count += 1.0;
+            }
+        }
+        if count > 0.0 {
+            return sum.map(|c| c / count);
+        }
+        let u = shader.u_on_disk(order, &self.ray);
+        colour(shader.amplitude(u, shader.lambda(&self.ray)))
+    }
+
+    /// Returns the order and the ray of the centre, or of the covered place that is nearest to it.
+    pub(super) fn nearest_covered(&self) -> Option<(u32, PlaceRay)> {
+        if let Some(order) = self.shader.front(&self.ray) {
+            return Some((order, self.ray));
+        }
+        let covering = self.near().iter().filter_map(|near| {
+            let order = near.above.or(near.below)?;
+            Some((order, near))
+        });
+        let (order, near) =
+            covering.min_by(|a, b| a.1.distance.abs().total_cmp(&b.1.distance.abs()))?;
+        let place = (
+            self.place.0 + near.distance * near.normal.0,
+            self.place.1 + near.distance * near.normal.1,
+        );
+        Some((order, self.shader.ray(place)))
+    }
+
+    /// Returns the share of the square that the hole's shadow covers.
+    pub(super) fn shadow(&self) -> f64 {
+        // The shadow's edge is h = 0. Near it h changes as κ does.
+        let Some(nearest) = self.nearest() else {
+            return f64::from(u8::from(self.ray.h > 0.0));
+        };
+        let per_pixel = (nearest.h - self.ray.h) / nearest.distance;
+        let distance = -self.ray.h / per_pixel.abs();
+        if distance.is_finite() {
+            1.0 - Section::new(nearest.normal).share_below(distance)
+        } else {
+            f64::from(u8::from(self.ray.h > 0.0))
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! What the ray of any place in the picture shows, from the map of the camera's radius.
+
+use super::centre::front;
+use crate::isoradial::{Isoradials, PlaneMeeting, RadiusMap};
+use crate::light::{SightGeometry, flux, redshift};
+use crate::scene::{PixelRay, View};
+
+/// Finds the inverse radius at which a ray with `κ − κ_c = h` meets the disk's plane in an order, where the map has a
+/// gap.
+pub(super) type Gaps<'a> = &'a (dyn Fn(u32, f64, PlaneMeeting) -> Option<f64> + Sync);
+
+/// Shades places of one view.
+#[derive(Clone, Copy)]
+pub(super) struct Shader<'a> {
+    pub(super) view: &'a View,
+    pub(super) curves: &'a Isoradials,
+    map: &'a RadiusMap,
+    gaps: Gaps<'a>,
+    pub(super) geometry: SightGeometry,
+    clock_rate: f64,
+    /// The inverse radii of the outer and the inner edge.
+    pub(super) u_edges: (f64, f64),
+    /// What the curves call the first order that is seen: 1 where the camera is in the disk's plane.
+    first_order: u32,
+}
+
+/// A ray of the picture.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PlaceRay {
+    pub(super) ray: PixelRay,
+    /// The length of its transverse part.
+    pub(super) s: f64,
+    /// `κ − κ_c`
+    pub(super) h: f64,
+    pub(super) meets: PlaneMeeting,
+}
+
+impl<'a> Shader<'a> {
+    pub(super) fn new(
+        view: &'a View,
+        curves: &'a Isoradials,
+        map: &'a RadiusMap,
+        gaps: Gaps<'a>,
+    ) -> Self {
+        Self {
+            view,
+            curves,
+            map,
+            gaps,
+            geometry: SightGeometry::new(view),
+            clock_rate: view.clock_rate(),
+            u_edges: curves.u_edges(),
+            first_order: u32::from(view.n_p() == 0.0),
+        }
+    }
+
+    /// Returns the ray of a place, in pixels from the picture's left and its top.
+    #[inline(always)]
+    pub(super) fn ray(&self, place: (f64, f64)) -> PlaceRay {
+        let view = self.view;
+        let ray = view.ray_at(view.x_at(place.0), view.y_at(place.1));
+        let s = ray.transverse();
+        let (n, d) = (self.view.n_p().abs() * s, self.view.plane_slope() * ray.ta);
+        PlaceRay {
+            ray,
+            s,
+            h: (ray.z - self.curves.critical() * s) / s,
+            meets: PlaneMeeting::new(n, d),
+        }
+    }
+
+    /// Returns the inverse radius at which a ray meets the disk's plane in an order; `None` where the map does not go.
+    #[inline(always)]
+    pub(super) fn u(&self, order: u32, ray: &PlaceRay) -> Option<f64> {
+        let section = self.map.section(order, ray.meets)?;
+        let column = section.column(ray.meets.x);
+        let tau = column.tau(ray.h);
+        column.holds(tau).then(|| column.u(tau))
+    }
+
+    /// Returns the same for a ray that meets the disk there, up to rounding.
+    #[inline]
+    pub(super) fn u_on_disk(&self, order: u32, ray: &PlaceRay) -> f64 {
+        let (outer, inner) = self.u_edges;
+        let u = match self.map.section(order, ray.meets) {
+            Some(section) => {
+                let column = section.column(ray.meets.x);
+                column.u(column.tau(ray.h).clamp(0.0, 1.0))
+            }
+            None => (self.gaps)(order, ray.h, ray.meets).unwrap_or(outer),
+        };
+        u.clamp(outer, inner)
+    }
+
+    /// Returns inverse radii, all at the x of `ray`, for several `κ − κ_c` on the disk.
+    #[inline]
+    pub(super) fn u_along(&self, order: u32, ray: &PlaceRay) -> impl Fn(f64) -> f64 + '_ {
+        let section = self.map.section(order, ray.meets);
+        let column = section.map(|section| section.column(ray.meets.x));
+        let (meets, (outer, inner)) = (ray.meets, self.u_edges);
+        move |h| {
+            let u = match &column {
+                Some(column) => column.u(column.tau(h).clamp(0.0, 1.0)),
+                None => (self.gaps)(order, h, meets).unwrap_or(outer),
+            };
+            u.clamp(outer, inner)
+        }
+    }
+
+    /// Returns the angular momentum of a ray's light along the disk's axis.
+    #[inline(always)]
+    pub(super) fn lambda(&self, ray: &PlaceRay) -> f64 {
+        self.geometry.angular_momentum(ray.ray).along
+    }
+
+    /// Returns the redshift g of light with the angular momentum `lambda` from the ring at u.
+    #[inline(always)]
+    pub(super) fn redshift(&self, u: f64, lambda: f64) -> f64 {
+        redshift(u, self.clock_rate, lambda)
+    }
+
+    /// Returns the amplitude `g² √(F/F_max)`.
+    #[inline(always)]
+    pub(super) fn amplitude(&self, u: f64, lambda: f64) -> f64 {
+        let g = self.redshift(u, lambda);
+        g * g * flux::signed_root(u)
+    }
+
+    /// Returns the order in front along a ray.
+    #[inline]
+    pub(super) fn front(&self, ray: &PlaceRay) -> Option<u32> {
+        let PlaceRay { ray, s, .. } = *ray;
+        let (n, d) = (self.view.n_p().abs() * s, self.view.plane_slope() * ray.ta);
+        if s > 0.0 {
+            self.curves.front(ray.z, s, n, d)
+        } else {
+            None
+        }
+    }
+
+    /// Returns the order in front at a place.
+    pub(super) fn front_at(&self, place: (f64, f64)) -> Option<u32> {
+        front(self.view, self.curves, place)
+    }
+
+    /// Returns the order that is told of what the curves call `order`.
+    pub(super) fn told(&self, order: u32) -> u32 {
+        order - self.first_order.min(order)
+    }
+}
