@@ -29,7 +29,8 @@ fn run(here: &Path, line: &[&str]) -> Vec<u8> {
 
 /// What ffprobe says of a film's first stream, a line for each of the entries.
 fn probed(here: &Path, film: &str) -> String {
-    let entries = "stream=pix_fmt,color_range,color_space,color_transfer,color_primaries,chroma_location,nb_frames,r_frame_rate";
+    let entries =
+        "stream=pix_fmt,color_range,color_space,color_transfer,color_primaries,r_frame_rate";
     let line = [
         "ffprobe",
         "-v",

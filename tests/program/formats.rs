@@ -5,13 +5,13 @@
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
-use std::process::{Output, Stdio};
+use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use darkness::scene::Animation;
 use tempfile::tempdir;
 
-use crate::harness::{darkness, done, fails, files, listing, refused, with_animation};
+use crate::harness::{PROGRAM, darkness, done, fails, files, listing, refused, with_animation};
 use crate::tools;
 
 /// Writes the scene of an orbit of 4 small frames around a disk with light.
@@ -272,6 +272,24 @@ fn a_film_without_ffmpeg_or_with_one_that_fails_leaves_nothing() {
 }
 
 #[test]
+fn a_quota_stops_ffmpeg_and_leaves_no_film() {
+    if !tools::has("ffmpeg") {
+        return;
+    }
+    let folder = with_animation(50);
+    let here = folder.path();
+    let before = listing(here);
+    // Blocks of 512 bytes.
+    let line = format!("ulimit -f 1; exec '{PROGRAM}' render small.toml -o a.mkv");
+    let output = Command::new("sh")
+        .args(["-c", &line])
+        .current_dir(here)
+        .output();
+    fails(&output.unwrap(), 1, &["a.mkv", "ffmpeg failed"]);
+    assert_eq!(listing(here), before);
+}
+
+#[test]
 fn a_film_that_is_interrupted_leaves_neither_a_file_nor_a_process() {
     if !tools::has("ffmpeg") {
         return;
@@ -291,7 +309,7 @@ fn a_film_that_is_interrupted_leaves_neither_a_file_nor_a_process() {
     }
     // Its file appears before ffmpeg is started.
     std::thread::sleep(Duration::from_millis(200));
-    let signal = std::process::Command::new("kill")
+    let signal = Command::new("kill")
         .args(["-TERM", &child.id().to_string()])
         .status();
     assert!(signal.unwrap().success());
