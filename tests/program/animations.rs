@@ -155,16 +155,24 @@ fn a_film_consists_of_its_header_and_its_frames() {
         here,
         &["render", "small.toml", "-o", "-", "--format", "raw"],
     );
-    let (film, _) = done(
-        here,
-        &["render", "small.toml", "-o", "-", "--format", "y4m"],
-    );
-    let header = b"YUV4MPEG2 W96 H54 F24:1 Ip A1:1 Cmono XCOLORRANGE=FULL\n";
+    let film = |format: &str| {
+        let args = ["render", "small.toml", "-o", "-", "--format", format];
+        done(here, &args).0
+    };
+    // Black is 16, white 235, and no colour 128.
+    let limited = |grey: &u8| 16 + ((u32::from(*grey) * 219 + 127) / 255) as u8;
+    let header = b"YUV4MPEG2 W96 H54 F24:1 Ip A1:1 C420mpeg2 XCOLORRANGE=LIMITED\n";
     let mut expected = header.to_vec();
+    let mut grey = b"YUV4MPEG2 W96 H54 F24:1 Ip A1:1 Cmono XCOLORRANGE=FULL\n".to_vec();
     for frame in raw.chunks(96 * 54) {
         expected.extend(b"FRAME\n");
-        expected.extend(frame);
+        expected.extend(frame.iter().map(limited));
+        expected.extend([128; 96 * 54 / 2]);
+        grey.extend(b"FRAME\n");
+        grey.extend(frame);
     }
+    assert!(film("y4m-gray") == grey);
+    let film = film("y4m");
     assert!(film == expected);
     done(here, &["render", "small.toml", "-o", "a.y4m"]);
     done(
@@ -185,7 +193,9 @@ fn a_film_consists_of_its_header_and_its_frames() {
             "render", "classic", "--size", "96x54", "-o", "-", "--format", "y4m",
         ],
     );
-    assert!(still.starts_with(b"YUV4MPEG2 W96") && still.len() == header.len() + 6 + 96 * 54);
+    assert!(
+        still.starts_with(b"YUV4MPEG2 W96") && still.len() == header.len() + 6 + 96 * 54 * 3 / 2
+    );
 }
 
 #[test]
@@ -238,7 +248,10 @@ fn misuse_is_reported_before_anything_is_done() {
         &["tables is a folder", "tables/small_####.png"],
     );
     misused(&["small.toml", "-o", "new/"], &["new/small_####.png"]);
-    misused(&["small.toml", "-o", "f_##.gif"], &[".png, .y4m or .raw"]);
+    misused(
+        &["small.toml", "-o", "f_##.gif"],
+        &[".png, .exr, .npz, .y4m"],
+    );
     misused(&["small.toml", "--frames", "19-21"], &["19-21", "1 to 20"]);
     misused(
         &["small.toml", "--frames", "5-1"],

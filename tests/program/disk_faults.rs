@@ -12,7 +12,7 @@ use crate::harness::{PROGRAM, done, files, with_animation};
 use crate::tools;
 
 /// Commands that write a file of each kind into the folder `out`, where `{}` stands for the program.
-const WRITERS: [(&str, &str); 8] = [
+const WRITERS: [(&str, &str); 10] = [
     ("t.table", "{} table draft -o out/t.table"),
     ("deep", "{} table draft -o out/deep/t.table"),
     (
@@ -20,6 +20,8 @@ const WRITERS: [(&str, &str); 8] = [
         "{} render classic --table tables/draft.table --size 1280x720 -o out/p.png",
     ),
     ("out", "{} render small.toml --size 960x540 -o out/f_##.png"),
+    ("out", "{} render small.toml --size 960x540 -o out/f_##.exr"),
+    ("out", "{} render small.toml --size 960x540 -o out/f_##.npz"),
     ("a.y4m", "{} render small.toml -o out/a.y4m"),
     ("a.raw", "{} render small.toml -o out/a.raw"),
     (

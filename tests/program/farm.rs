@@ -72,7 +72,7 @@ fn the_command_in_the_readme_makes_a_film_with_the_right_range_and_colours() {
     let readme = include_str!("../../README.md");
     let line = readme
         .lines()
-        .find(|line| line.contains("| ffmpeg"))
+        .find(|line| line.contains("-o orbit.mp4"))
         .unwrap();
     let small = line.replace("render orbit", "render orbit --size 320x180 --frames 1-24");
     assert_ne!(small, line);
@@ -153,7 +153,14 @@ fn ffmpeg_reads_a_film_to_the_last_bit() {
     run(
         here,
         "darkness",
-        &["render", "small.toml", "-o", "film.y4m"],
+        &[
+            "render",
+            "small.toml",
+            "--format",
+            "y4m-gray",
+            "-o",
+            "film.y4m",
+        ],
     );
     run(
         here,

@@ -78,8 +78,8 @@ pub(in crate::cli) struct RenderArgs {
     /// Fail where the table is missing, instead of making it: for one of many workers
     #[arg(long)]
     pub(super) require_table: bool,
-    /// The most memory for frames, such as 16GiB: two bytes for each pixel of the masks that are drawn at a time, six for
-    /// 8-bit colour, twelve for 16-bit colour, eight for each number of a layer
+    /// The most memory for the frames that are drawn at a time, such as 16GiB: for each pixel two bytes for a mask, six
+    /// for 8-bit colour, twelve for 16-bit colour, eight for each number of a layer
     #[arg(long, value_name = "SIZE", default_value = memory::DEFAULT, value_parser = memory::parse)]
     pub(super) max_memory: ByteSize,
     #[command(flatten)]

@@ -3,20 +3,22 @@
 //! One part of 32-bit floats, compressed by ZIP in blocks of 16 rows. Colour is in the channels `R`, `G`, `B` and, with
 //! the alpha layer, `A`: linear and premultiplied, with the chromaticities of Rec. 709. Each other layer is a channel
 //! `disk.NAME`. Text attributes hold the program's version (`software`) and the [`FrameOrigin`]: `darkness:scene`,
-//! `darkness:table`, `darkness:frame`. The format checks no data, so `darkness:crc32` holds the CRC-32 of the whole file
-//! with eight zeros in its own place.
+//! `darkness:table`, `darkness:frame`. The format does not check its data, so `darkness:crc32` holds the CRC-32 of the
+//! whole file with eight zeros in its own place.
 
-use std::io::{self, Cursor};
+use std::io::{self, Cursor, Write};
 use std::iter::once;
 
+use exr::block;
+use exr::block::chunk::{Chunk, CompressedBlock, CompressedScanLineBlock};
 use exr::block::writer::ChunksWriter;
-use exr::block::{self, UncompressedBlock};
 use exr::math::Vec2;
 use exr::meta::BlockDescription;
 use exr::meta::attribute::{
     AttributeValue, ChannelDescription, Chromaticities, Compression, LineOrder, SampleType, Text,
 };
 use exr::meta::header::Header;
+use flate2::write::ZlibEncoder;
 
 use super::memory;
 use super::origin::{FrameOrigin, SOFTWARE};
@@ -34,6 +36,9 @@ const START: usize = 8;
 
 /// More than the attributes of a file take, in bytes.
 const MOST_ATTRIBUTES: usize = 4096;
+
+/// The rows of a compressed block.
+const ROWS: usize = 16;
 
 /// A channel of a file, and where its values are.
 struct Channel<'a> {
@@ -60,22 +65,54 @@ pub(super) fn encode(
 
     let header = header(&channels, (width, height), origin);
     let mut file = Cursor::new(Vec::new());
-    block::write(&mut file, once(header).collect(), true, |meta, writer| {
-        let mut blocks = meta.collect_ordered_blocks(|index| {
-            UncompressedBlock::from_lines(&meta.headers[0].channels, index, |line| {
-                let channel = &channels[line.location.channel];
-                let (count, first) = (channel.plane.layer.channels(), line.location.position);
-                let from = (first.y() * width + first.x()) * count + channel.offset;
-                let values = &channel.plane.values[from..];
-                // A line in memory takes what is written.
-                let _ = line.write_samples(|i| values[i * count]);
-            })
-        });
-        let mut compressor = writer.sequential_blocks_compressor(&meta);
-        blocks.try_for_each(|(place, block)| compressor.compress_block(place, block))
+    block::write(&mut file, once(header).collect(), true, |_, writer| {
+        for (place, top) in (0..height).step_by(ROWS).enumerate() {
+            let mut values = Vec::new();
+            for row in top..height.min(top + ROWS) {
+                for Channel { plane, offset, .. } in &channels {
+                    let (first, count) = (row * width, plane.layer.channels());
+                    let row = &plane.values[first * count..(first + width) * count];
+                    let row = row[*offset..].iter().step_by(count);
+                    values.extend(row.flat_map(|value| value.to_le_bytes()));
+                }
+            }
+            let block = CompressedScanLineBlock {
+                y_coordinate: top as i32,
+                compressed_pixels_le: zipped(values)?,
+            };
+            let chunk = Chunk {
+                layer_index: 0,
+                compressed_block: CompressedBlock::ScanLine(block),
+            };
+            writer.write_chunk(place, chunk)?;
+        }
+        Ok(())
     })
     .map_err(io::Error::other)?;
     Ok(signed(sorted(file.into_inner())))
+}
+
+/// A block's values, compressed as the format's ZIP is: all first bytes of two and all second ones, as differences,
+/// deflated; as they are where that is longer. The crate's own compression takes three times as long, for a tenth less.
+fn zipped(values: Vec<u8>) -> io::Result<Vec<u8>> {
+    let (pairs, _) = values.as_chunks::<2>();
+    let bytes = (pairs.iter().map(|pair| pair[0])).chain(pairs.iter().map(|pair| pair[1]));
+    // The first byte stands for itself.
+    let mut last = 128;
+    let differences: Vec<u8> = bytes
+        .map(|byte| {
+            byte.wrapping_sub(std::mem::replace(&mut last, byte))
+                .wrapping_add(128)
+        })
+        .collect();
+    let mut encoder = ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
+    encoder.write_all(&differences)?;
+    let zipped = encoder.finish()?;
+    Ok(if zipped.len() < values.len() {
+        zipped
+    } else {
+        values
+    })
 }
 
 /// Whether `file` is a whole file, with the right checksum, that this version of the program made of `origin`.

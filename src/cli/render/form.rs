@@ -38,7 +38,8 @@ pub(super) fn checked(
     }
     if bits == 16 && format != Format::Png {
         return Err(misuse(format!(
-            ".{name} films have 8 bits a sample, and the scene asks for 16; set image.bits = 8, or write .png or .exr files"
+            ".{name} films have 8 bits a sample, and the scene asks for 16; set image.bits = 8, or write .png or .exr \
+             files"
         )));
     }
     if is_lit && format == Format::Y4mGray {

@@ -25,9 +25,9 @@ pub(super) enum Format {
     Raw,
     /// A film of all frames, H.264, made by ffmpeg
     Mp4,
-    /// The same in a QuickTime file
+    /// The same for QuickTime
     Mov,
-    /// The same in a Matroska file
+    /// The same for Matroska
     Mkv,
     /// A film of all frames, VP9, made by ffmpeg
     Webm,

@@ -1,7 +1,7 @@
 //! Frames as PNG files.
 //!
-//! Masks are grey: their values are linear coverage, and a gAMA chunk of 1.0 says so. Colour is sRGB: an sRGB chunk, and
-//! for readers that do not know it the gAMA and cHRM chunks that the PNG specification pairs with it (11.3.2.5). A
+//! Masks are grey: their values are linear coverage, and a gAMA chunk of 1.0 says so. Colour is sRGB: an sRGB chunk,
+//! and for readers that do not know it the gAMA and cHRM chunks that the PNG specification pairs with it (11.3.2.5). A
 //! sample has 8 or 16 bits, or one where edges are hard. Text chunks (11.3.3) before the pixels hold the program's
 //! version (`Software`) and the [`FrameOrigin`]: `darkness:scene`, `darkness:table`, `darkness:frame`.
 
@@ -24,8 +24,8 @@ const ENCODER_MEMORY: usize = 4 << 20;
 /// The first bytes of every PNG file.
 const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1A\n";
 
-/// Whether `file` is a whole PNG file of `depth` bits a sample, with correct checksums, that this version of the program
-/// made of `origin`.
+/// Whether `file` is a whole PNG file of `depth` bits a sample, with correct checksums, that this version of the
+/// program made of `origin`.
 pub(super) fn made(file: &[u8], depth: u8, origin: &FrameOrigin) -> bool {
     let mut texts = origin.texts().into_iter().peekable();
     let mut rest = file.strip_prefix(&SIGNATURE).unwrap_or_default();
