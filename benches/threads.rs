@@ -7,6 +7,7 @@ mod interleaved;
 use darkness::cli::FrameRange;
 use darkness::isoradial::{CurveSpec, Isoradials};
 use darkness::orbit::exact::Exact;
+use darkness::render::Form;
 use darkness::render::batch::{self, Curved, DrawnFrame, Sharing};
 use darkness::render::frame::{Threads, Workspace};
 use darkness::scene::{Animation, Scene, View, builtins};
@@ -101,6 +102,7 @@ fn main() {
                 };
                 let drawn = batch::draw(
                     frames,
+                    Form::Grey8,
                     all.iter(),
                     Sharing::fastest(all.count(), u64::MAX),
                     |_| true,

@@ -414,7 +414,7 @@ mod tests {
             path.draw(half, &projection, TOLERANCE, weight, false);
             let sees = |arc: &EdgeArc, u: f64, v: f64| {
                 let place = if arc.steep { (v, u) } else { (u, v) };
-                crate::render::centre::sees(&view, &curves, place)
+                crate::render::centre::front(&view, &curves, place).is_some()
             };
             let (mut places, mut wrong) = (0, 0);
             // Lines that join the splines of two quarter turns are as short as these are wrong.

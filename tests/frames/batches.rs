@@ -8,7 +8,7 @@ use darkness::cli::FrameRange;
 use darkness::isoradial::{CurveSpec, Isoradials};
 use darkness::orbit::exact::Exact;
 use darkness::render::batch::{self, Curved, DrawnFrame, FrameError, Frames, RayByRay, Sharing};
-use darkness::render::{coverage, mask, pixelwise};
+use darkness::render::{Form, Pixels, coverage, mask, pixelwise};
 use darkness::scene::{Animation, Scene, View};
 
 /// A built-in animation, small, so many of its frames long.
@@ -35,7 +35,9 @@ fn drawn(frames: &impl Frames, range: &str, threads: usize) -> BTreeMap<u32, Vec
     let all = Mutex::new(BTreeMap::new());
     let places = Mutex::new(Vec::new());
     let done = |drawn: DrawnFrame<'_>| {
-        let (pixels, effort) = drawn.pixels?;
+        let (Pixels::Grey8(pixels), effort) = drawn.pixels? else {
+            panic!("asked for another form");
+        };
         assert!(!effort.ray_by_ray);
         places.lock().unwrap().push((drawn.number, drawn.place));
         all.lock().unwrap().insert(drawn.number, pixels.to_vec());
@@ -43,7 +45,16 @@ fn drawn(frames: &impl Frames, range: &str, threads: usize) -> BTreeMap<u32, Vec
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.unwrap()
-        .install(|| batch::draw(frames, range.iter(), fastest(&range), |_| true, done))
+        .install(|| {
+            batch::draw(
+                frames,
+                Form::Grey8,
+                range.iter(),
+                fastest(&range),
+                |_| true,
+                done,
+            )
+        })
         .unwrap();
     let mut places = places.into_inner().unwrap();
     places.sort_unstable();
