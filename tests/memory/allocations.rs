@@ -8,6 +8,7 @@ use std::alloc::System;
 use darkness::cli::FrameRange;
 use darkness::isoradial::{CurveSpec, Isoradials};
 use darkness::orbit::exact::Exact;
+use darkness::render::Form;
 use darkness::render::batch::{self, Curved, DrawnFrame, Sharing};
 use darkness::render::frame::{Threads, Workspace};
 use darkness::scene::{Animation, Scene, View};
@@ -73,7 +74,7 @@ pub(crate) fn frames_take_no_memory_once_warm() {
             let curved = Curved::new(&orbit, &Exact);
             let done = |drawn: DrawnFrame<'_>| drawn.pixels.map(|_| ());
             let sharing = Sharing::fastest(frames.count(), u64::MAX);
-            batch::draw(&curved, frames.iter(), sharing, |_| true, done).unwrap();
+            batch::draw(&curved, Form::Grey8, frames.iter(), sharing, |_| true, done).unwrap();
         };
         draw(FrameRange::up_to(20));
         let (some, all) = (
