@@ -21,8 +21,11 @@ const TILE: (usize, usize) = (64, 32);
 /// Memory for the cells of a band, in bytes: what the nearer caches hold.
 const BAND: usize = 1 << 20;
 
-/// A share this near to the whole counts as the whole: areas are rounded.
-const WHOLE: i64 = ONE - ONE / 512;
+/// A share above this counts as the whole: areas are rounded.
+const WHOLE: i64 = ONE - 8;
+
+/// A smaller share counts as none. So what one order covers as a whole has no part of another.
+const LEAST: i64 = 16;
 
 /// A rectangle with fewer pixels than this is not worth a patch, as a multiple of its nodes.
 const WORTH: usize = 1;
@@ -265,7 +268,7 @@ fn collect(
                     to: to as u32,
                 }),
             }
-        } else if share > 0 {
+        } else if share >= LEAST {
             for column in from..to {
                 partial.borrow_mut().push(Partial {
                     row: row as u32,

@@ -172,7 +172,16 @@ fn a_failure_ends_the_batch_if_it_is_told_to() {
             }
         };
         let range = FrameRange::up_to(401);
-        let run = || batch::draw(&frames, range.iter(), fastest(&range), |_| true, done);
+        let run = || {
+            batch::draw(
+                &frames,
+                Form::Grey8,
+                range.iter(),
+                fastest(&range),
+                |_| true,
+                done,
+            )
+        };
         let ended = pool.install(run);
         assert_eq!(ended.is_err(), stop);
         if stop {
@@ -197,6 +206,7 @@ fn frames_that_are_not_wanted_are_passed_over() {
     let range = FrameRange::up_to(40);
     batch::draw(
         &Curved::new(&orbit, &Exact),
+        Form::Grey8,
         range.iter(),
         fastest(&range),
         |number| number % 10 == 3,

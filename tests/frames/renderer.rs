@@ -2,7 +2,7 @@
 
 use std::sync::Mutex;
 
-use darkness::render::{RenderError, coverage, mask};
+use darkness::render::{Form, Pixels, RenderError, coverage, mask};
 use darkness::scene::{Animation, Scene, View};
 use darkness::table::Lookup;
 use darkness::{Renderer, isoradial::CurveSpec, isoradial::Isoradials};
@@ -112,8 +112,12 @@ fn frames_of_an_animation_are_drawn_side_by_side() {
     let drawn = Mutex::new(Vec::new());
     let small: Vec<u32> = vec![3, 50, 240];
     renderer
-        .render_frames(&animation, small.iter().copied(), |frame| {
-            let (pixels, report) = frame.pixels.map_err(|error| error.to_string())?;
+        .render_frames(&animation, Form::Grey8, small.iter().copied(), |frame| {
+            let (Pixels::Grey8(pixels), report) =
+                frame.pixels.map_err(|error| error.to_string())?
+            else {
+                return Err("another form".to_owned());
+            };
             assert!(!report.ray_by_ray && report.error.total() <= 1e-3);
             drawn.lock().unwrap().push((frame.number, pixels.len()));
             Ok::<(), String>(())
@@ -128,6 +132,8 @@ fn frames_of_an_animation_are_drawn_side_by_side() {
             .map(|&number| (number, 1920 * 1080))
             .collect::<Vec<_>>()
     );
-    let stopped = renderer.render_frames(&animation, [1, 2].into_iter(), |_| Err("enough"));
+    let stopped = renderer.render_frames(&animation, Form::Grey8, [1, 2].into_iter(), |_| {
+        Err("enough")
+    });
     assert_eq!(stopped, Err("enough"));
 }

@@ -49,7 +49,7 @@ pub(crate) fn frames_take_no_memory_once_warm() {
             let scene = Scene::builtin(name).unwrap().with_size(640, 360).unwrap();
             let view = View::new(&scene);
             let curves = Isoradials::new(&CurveSpec::new(&scene, &view, scene.tolerance()), &Exact);
-            let mut pixels = vec![0; 640 * 360];
+            let mut pixels = vec![0_u8; 640 * 360];
             let mut workspace = Workspace::default();
             let mut draw = |frames| {
                 for _ in 0..frames {
