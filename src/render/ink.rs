@@ -80,7 +80,7 @@ pub(super) trait Ink: Sync {
         band: &mut Self::Band<'_>,
         shader: &Shader<'_>,
         order: u32,
-        (row, column): (usize, usize),
+        pixel: (usize, usize),
         ray: &PlaceRay,
         values: &[f64],
     );

@@ -462,7 +462,8 @@ impl<I: Ink> Painter<'_, I> {
                 let ray = shader.ray((column as f64 + 0.5, (top + row) as f64 + 0.5));
                 let u = shader.u_on_disk(order, &ray);
                 self.ink.evaluate(shader, order, u, &ray, &mut values);
-                self.ink.put(memory, shader, order, (row, column), &ray, &values);
+                self.ink
+                    .put(memory, shader, order, (row, column), &ray, &values);
             }
         }
     }
