@@ -195,8 +195,9 @@ fn evaluate_amplitude(shader: &Shader<'_>, u: f64, ray: &PlaceRay, values: &mut 
     values[0] = shader.amplitude(u, shader.lambda(ray));
 }
 
-/// How far an amplitude may be off for colours of 8 bits: 1/20 of a code where light rises with the tenth power of it.
-const COLOUR_TOLERANCE: f64 = 2e-5;
+/// The last coefficients of an amplitude for colours of 8 bits. The amplitude itself is off by a fifth of it or less: by
+/// 1/20 of a code where light rises with its tenth power.
+const COLOUR_TOLERANCE: f64 = 1e-4;
 
 /// The most places a side of a pixel over which its light is averaged.
 const MOST_PARTS: usize = 8;
@@ -361,7 +362,7 @@ impl Ink for Rgb16<'_> {
     }
 
     fn tolerance(&self) -> f64 {
-        COLOUR_TOLERANCE / 256.0
+        COLOUR_TOLERANCE / 200.0
     }
 
     fn evaluate(&self, shader: &Shader<'_>, _: u32, u: f64, ray: &PlaceRay, values: &mut [f64]) {
