@@ -241,7 +241,7 @@ fn offset(i: usize, parts: usize) -> f64 {
 }
 
 /// How far data may be off.
-const DATA_TOLERANCE: f64 = 1e-7;
+const DATA_TOLERANCE: f64 = 3e-8;
 
 /// Colours of 8 bits.
 pub(super) struct Rgb8<'a>(pub(super) &'a Colours, pub(super) Averaging);
