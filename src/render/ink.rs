@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use super::error::RenderError;
 use super::mixture::Mixture;
-use super::patch::Patch;
+use super::patch::{Patch, RowPolynomial};
 use super::planes::{Form, Plane};
 use super::shader::{PlaceRay, Shader};
 use crate::light::{DisplayTransform, Palette, Radiance, RadianceTable, Sight, flux};
@@ -25,6 +25,11 @@ pub(super) trait Ink: Sync {
 
     /// Fills a band with what is seen where there is no disk.
     fn clear(&self, band: &mut Self::Band<'_>);
+
+    /// Adds to a band, which begins at row `top` of the picture, what is seen beside the disk.
+    fn finish(&self, band: &mut Self::Band<'_>, shader: &Shader<'_>, top: usize, smooth: bool) {
+        let _ = (band, shader, top, smooth);
+    }
 
     /// How many quantities are interpolated, at most 8.
     fn quantities(&self) -> usize;
@@ -64,14 +69,19 @@ pub(super) trait Ink: Sync {
         y: f64,
     );
 
+    /// Whether pixels without a patch are painted as mixtures: their light is averaged.
+    fn averages(&self) -> bool {
+        true
+    }
+
     /// Paints one pixel, wholly covered.
     fn put(
         &self,
         band: &mut Self::Band<'_>,
         shader: &Shader<'_>,
         order: u32,
-        row: usize,
-        column: usize,
+        pixel: (usize, usize),
+        ray: &PlaceRay,
         values: &[f64],
     );
 
@@ -112,6 +122,45 @@ impl Colours {
         }
     }
 
+    /// Calls `put` with the linear light of pixels of a row: its mean over `parts` places a side of each.
+    #[inline]
+    fn averaged(
+        &self,
+        patch: &Patch,
+        quantity: usize,
+        (from, to): (usize, usize),
+        y: f64,
+        parts: usize,
+        mut put: impl FnMut(usize, [f32; 3]),
+    ) {
+        if parts == 1 {
+            patch
+                .row(quantity, y)
+                .for_lanes(from, to, |column, amplitudes| {
+                    for (i, amplitude) in amplitudes.iter().enumerate() {
+                        put(column + i, self.radiance.rgb(*amplitude));
+                    }
+                });
+            return;
+        }
+        let rows: [RowPolynomial; MOST_PARTS] =
+            core::array::from_fn(|i| patch.row(quantity, y + offset(i.min(parts - 1), parts)));
+        let share = 1.0 / (parts * parts) as f32;
+        for column in from..to {
+            let mut sum = [0.0; 3];
+            for row in &rows[..parts] {
+                for i in 0..parts {
+                    let amplitude = row.at(column as f64 + 0.5 + offset(i, parts));
+                    let rgb = self.radiance.rgb(amplitude as f32);
+                    for (sum, c) in sum.iter_mut().zip(rgb) {
+                        *sum += share * c;
+                    }
+                }
+            }
+            put(column, sum);
+        }
+    }
+
     /// The linear light of a pixel that is covered in part.
     fn mixed(&self, parts: &[Part], mixture: &Mixture<'_>) -> [f32; 3] {
         let mut sum = [0.0; 3];
@@ -149,8 +198,37 @@ fn evaluate_amplitude(shader: &Shader<'_>, u: f64, ray: &PlaceRay, values: &mut 
 /// How far an amplitude may be off for colours of 8 bits: 1/20 of a code where light rises with the tenth power of it.
 const COLOUR_TOLERANCE: f64 = 2e-5;
 
+/// The most places a side of a pixel over which its light is averaged.
+const MOST_PARTS: usize = 8;
+
+/// Where the amplitude changes by less than this from a pixel to the next, the light of the centre is the mean: it is
+/// off by about `L″ δ²/24` where the amplitude changes by δ, with L″ some 10, so by 1e-3 of the hottest ring's light.
+const FLAT: f64 = 0.05;
+
+/// Two places a side, at ±1/√12, are exact to the fourth power of the change. They do up to this change.
+const STEEP: f64 = 0.3;
+
+/// How many places a side of a pixel its light is averaged over.
+fn parts(patch: &Patch) -> usize {
+    match patch.steepness() {
+        flat if flat <= FLAT => 1,
+        steep if steep <= STEEP => 2,
+        steep if steep <= 2.0 * STEEP => 4,
+        _ => MOST_PARTS,
+    }
+}
+
+/// Where the i-th of `parts` places of a pixel's side is, from its middle: pairs of Gauss's places.
+fn offset(i: usize, parts: usize) -> f64 {
+    /// `1/√12`
+    const GAUSS: f64 = 0.288_675_134_594_812_9;
+    let pairs = parts / 2;
+    let pair = ((i / 2) as f64 + 0.5) / pairs as f64 - 0.5;
+    pair + (if i.is_multiple_of(2) { -GAUSS } else { GAUSS }) / pairs as f64
+}
+
 /// How far data may be off.
-const DATA_TOLERANCE: f64 = 2e-8;
+const DATA_TOLERANCE: f64 = 1e-7;
 
 /// Colours of 8 bits.
 pub(super) struct Rgb8<'a>(pub(super) &'a Colours);
@@ -222,6 +300,15 @@ impl Ink for Rgb8<'_> {
         patch: &Patch,
         y: f64,
     ) {
+        let parts = parts(patch);
+        if parts > 1 {
+            let pixels = band.pixels(row, from, to);
+            self.0
+                .averaged(patch, 0, (from, to), y, parts, |column, light| {
+                    pixels[column - from] = self.0.display.rgb8(light);
+                });
+            return;
+        }
         let mut pixels = band.pixels(row, from, to).iter_mut();
         let palette = &self.0.palette;
         patch.row(0, y).for_lanes(from, to, |_, amplitudes| {
@@ -237,8 +324,8 @@ impl Ink for Rgb8<'_> {
         band: &mut Self::Band<'_>,
         _: &Shader<'_>,
         _: u32,
-        row: usize,
-        column: usize,
+        (row, column): (usize, usize),
+        _: &PlaceRay,
         values: &[f64],
     ) {
         let [r, g, b, _] = self.0.palette.rgb8(values[0] as f32);
@@ -292,10 +379,11 @@ impl Ink for Rgb16<'_> {
         y: f64,
     ) {
         let pixels = band.pixels(row, from, to);
-        patch.row(0, y).for_each(from, to, |column, amplitude| {
-            let light = self.0.radiance.rgb(amplitude as f32);
-            pixels[column - from] = self.0.display.rgb16(light);
-        });
+        let parts = parts(patch);
+        self.0
+            .averaged(patch, 0, (from, to), y, parts, |column, light| {
+                pixels[column - from] = self.0.display.rgb16(light);
+            });
     }
 
     fn put(
@@ -303,8 +391,8 @@ impl Ink for Rgb16<'_> {
         band: &mut Self::Band<'_>,
         _: &Shader<'_>,
         _: u32,
-        row: usize,
-        column: usize,
+        (row, column): (usize, usize),
+        _: &PlaceRay,
         values: &[f64],
     ) {
         let light = self.0.radiance.rgb(values[0] as f32);
@@ -464,8 +552,8 @@ impl<'a> Data<'a> {
             match (*layer, value) {
                 (Layer::Coverage | Layer::Alpha, _) => plane[pixel] = 1.0,
                 (Layer::Order, _) => plane[pixel] = order as f32,
-                (Layer::Azimuth, Some(azimuth)) => plane[pixel] = turned(azimuth),
-                (Layer::Temperature, Some(y)) => plane[pixel] = self.kelvin(y),
+                (Layer::Azimuth, Some(azimuth)) => plane[pixel] = turned(azimuth as f32),
+                (Layer::Temperature, Some(y)) => plane[pixel] = self.kelvin(y as f32),
                 (Layer::Colour, Some(y)) => {
                     let rgb = self
                         .colours
@@ -478,21 +566,37 @@ impl<'a> Data<'a> {
         }
     }
 
-    fn kelvin(&self, amplitude: f64) -> f32 {
-        (self.temperature * amplitude.max(0.0).sqrt()) as f32
+    fn kelvin(&self, amplitude: f32) -> f32 {
+        self.temperature as f32 * amplitude.max(0.0).sqrt()
+    }
+}
+
+/// Adds the hole's shadow where there is no disk, to rows from row `top` of the picture on: what the centre sees, or
+/// with smooth edges the covered share.
+fn add_shadow(alpha: &mut [f32], width: usize, shader: &Shader<'_>, top: usize, smooth: bool) {
+    for (i, alpha) in alpha.iter_mut().enumerate() {
+        if *alpha == 0.0 {
+            let place = ((i % width) as f64 + 0.5, (top + i / width) as f64 + 0.5);
+            let share = shader.shadow(place);
+            *alpha = if smooth {
+                share as f32
+            } else {
+                f32::from(u8::from(share >= 0.5))
+            };
+        }
     }
 }
 
 /// An angle as a float within 0 and 2π.
-fn turned(angle: f64) -> f32 {
-    let angle = if angle < 0.0 {
-        angle + TAU
-    } else if angle >= TAU {
-        angle - TAU
+fn turned(angle: f32) -> f32 {
+    const TURN: f32 = core::f32::consts::TAU;
+    if angle < 0.0 {
+        angle + TURN
+    } else if angle >= TURN {
+        angle - TURN
     } else {
         angle
-    };
-    angle as f32
+    }
 }
 
 impl Ink for Data<'_> {
@@ -501,6 +605,14 @@ impl Ink for Data<'_> {
     fn clear(&self, band: &mut Self::Band<'_>) {
         for (layer, plane) in &mut band.planes {
             plane.fill(layer.nothing());
+        }
+    }
+
+    fn finish(&self, band: &mut Self::Band<'_>, shader: &Shader<'_>, top: usize, smooth: bool) {
+        for (layer, plane) in &mut band.planes {
+            if *layer == Layer::Alpha {
+                add_shadow(plane, band.width, shader, top, smooth);
+            }
         }
     }
 
@@ -529,14 +641,18 @@ impl Ink for Data<'_> {
         for (value, quantity) in values.iter_mut().zip(&self.quantities) {
             *value = match quantity {
                 Quantity::Radius => 1.0 / u,
-                Quantity::Azimuth => shader.geometry.azimuth(ray.ray, shader.told(order)),
+                Quantity::Azimuth => shader.geometry.azimuth(ray.ray, shader.told(order, ray)),
                 Quantity::Redshift => g,
                 Quantity::EmissionCosine => {
                     crate::light::emission_cosine(u, momentum.across, momentum.along)
                 }
-                Quantity::Amplitude => g * g * flux::signed_root(u),
+                Quantity::Amplitude => g * g * shader.flux_root(u),
             };
         }
+    }
+
+    fn averages(&self) -> bool {
+        self.layers.has(Layer::Colour)
     }
 
     fn kept(&self, values: &[f64]) -> f64 {
@@ -574,32 +690,39 @@ impl Ink for Data<'_> {
             let place = Self::of(*layer).and_then(|quantity| self.place_of(quantity));
             let Some(place) = place else {
                 match layer {
-                    Layer::Order => pixels.fill(shader.told(order) as f32),
+                    Layer::Order if shader.is_in_plane => {
+                        for (i, pixel) in pixels.iter_mut().enumerate() {
+                            let ray = shader.ray(((from + i) as f64 + 0.5, y));
+                            *pixel = shader.told(order, &ray) as f32;
+                        }
+                    }
+                    Layer::Order => pixels.fill(order as f32),
                     _ => pixels.fill(1.0),
                 }
                 continue;
             };
             let polynomial = patch.row(place, y);
-            match layer {
-                Layer::Radius => polynomial.for_each(from, to, |column, r| {
-                    pixels[column - from] = r.clamp(least, greatest) as f32;
-                }),
-                Layer::Azimuth => polynomial.for_each(from, to, |column, azimuth| {
-                    pixels[column - from] = turned(azimuth);
-                }),
-                Layer::Temperature => polynomial.for_each(from, to, |column, amplitude| {
-                    pixels[column - from] = self.kelvin(amplitude);
-                }),
-                Layer::Colour => polynomial.for_each(from, to, |column, amplitude| {
-                    let rgb = self
-                        .colours
-                        .map_or([0.0; 3], |colours| colours.radiance.rgb(amplitude as f32));
-                    pixels[3 * (column - from)..][..3].copy_from_slice(&rgb);
-                }),
-                _ => polynomial.for_each(from, to, |column, value| {
-                    pixels[column - from] = value as f32;
-                }),
+            if *layer == Layer::Colour {
+                if let Some(colours) = self.colours {
+                    let parts = parts(patch);
+                    colours.averaged(patch, place, (from, to), y, parts, |column, light| {
+                        pixels[3 * (column - from)..][..3].copy_from_slice(&light);
+                    });
+                }
+                continue;
             }
+            let (least, greatest) = (least as f32, greatest as f32);
+            polynomial.for_lanes(from, to, |column, values| {
+                let pixels = pixels[column - from..].iter_mut().zip(values);
+                match layer {
+                    Layer::Radius => {
+                        pixels.for_each(|(pixel, r)| *pixel = r.clamp(least, greatest));
+                    }
+                    Layer::Azimuth => pixels.for_each(|(pixel, angle)| *pixel = turned(*angle)),
+                    Layer::Temperature => pixels.for_each(|(pixel, y)| *pixel = self.kelvin(*y)),
+                    _ => pixels.for_each(|(pixel, value)| *pixel = *value),
+                }
+            });
         }
     }
 
@@ -608,12 +731,13 @@ impl Ink for Data<'_> {
         band: &mut Self::Band<'_>,
         shader: &Shader<'_>,
         order: u32,
-        row: usize,
-        column: usize,
+        (row, column): (usize, usize),
+        ray: &PlaceRay,
         values: &[f64],
     ) {
         let pixel = row * band.width + column;
-        self.set(band, shader.told(order), pixel, values);
+        let told = shader.told(order, ray);
+        self.set(band, told, pixel, values);
     }
 
     fn put_mixture(
@@ -632,7 +756,7 @@ impl Ink for Data<'_> {
                 let u = shader.u_on_disk(order, &ray);
                 self.evaluate(shader, order, u, &ray, &mut values);
             }
-            self.set(band, shader.told(order), pixel, &values);
+            self.set(band, shader.told(order, &ray), pixel, &values);
         }
         let share = parts.iter().map(|part| part.share).sum::<f32>().min(1.0);
         let light = match self.colours {
@@ -643,7 +767,11 @@ impl Ink for Data<'_> {
             match layer {
                 Layer::Coverage => plane[pixel] = share,
                 Layer::Alpha => {
-                    let shadow = mixture.shadow() as f32;
+                    let shadow = if share < 1.0 {
+                        mixture.shadow() as f32
+                    } else {
+                        0.0
+                    };
                     plane[pixel] = share + (1.0 - share) * shadow;
                 }
                 Layer::Colour => plane[3 * pixel..][..3].copy_from_slice(&light),
