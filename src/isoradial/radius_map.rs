@@ -18,7 +18,7 @@
 //! They need not be right: u is computed for the rays that they lead to. That keeps τ analytic.
 //!
 //! Nodes are Chebyshev's, ends included. The degrees follow from the coefficients along a few lines: from the first
-//! degree on that leaves less than [`TOLERANCE`]. The error is measured at places between the nodes.
+//! degree on that leaves less than [`TOLERANCE`], or less than the angles' own error. The error is measured at places between the nodes.
 //!
 //! The map goes a little beyond both edges, so that whoever interpolates it in the picture need not stop there.
 
@@ -36,6 +36,10 @@ use crate::orbit::path::{Branch, SweptAngles, point_at_angle};
 /// The largest relative error of u that is aimed at: half a unit in the last place of a float of 32 bits.
 const TOLERANCE: f64 = 3e-8;
 
+/// The relative error of u aimed at is no smaller than this many errors of the angles: no polynomial follows their
+/// noise, and halving a part of the axis does not lessen it.
+const NOISE: f64 = 4.0;
+
 /// The degree of the lines that tell the degrees.
 const MOST: usize = 14;
 
@@ -49,8 +53,8 @@ const LONGEST: f64 = 0.5;
 /// The shortest part of the axis that is halved.
 const SHORTEST: f64 = 1e-5;
 
-/// A section that is off by more than this is not used.
-const WORST: f64 = 5e-7;
+/// A section that is off by more than this many tolerances is not used.
+const WORST: f64 = 16.0;
 
 /// How far the map goes beyond an edge, as a share of the way between the edges.
 const MARGIN: f64 = 0.125;
@@ -356,13 +360,18 @@ impl<A: SweptAngles> PieceRays<'_, A> {
             let degrees = self.degrees(&frame, lines)?;
             let is_resolved = degrees.0.max(degrees.1) < MOST;
             self.on(&frame, degrees)
-                .filter(|section| is_resolved || section.error <= TOLERANCE)
+                .filter(|section| is_resolved || section.error <= self.tolerance())
         });
         match found {
-            Some(section) if section.error <= WORST => sections.push(section),
+            Some(section) if section.error <= WORST * self.tolerance() => sections.push(section),
             _ if x.1 - x.0 > SHORTEST => halve(sections),
             _ => {}
         }
+    }
+
+    /// The relative error of u that is aimed at.
+    fn tolerance(&self) -> f64 {
+        TOLERANCE.max(NOISE * self.angles.error())
     }
 
     /// How much greater u is on the inner edge than on the outer one.
@@ -388,7 +397,7 @@ impl<A: SweptAngles> PieceRays<'_, A> {
 
     /// The degrees along x and τ, from lines along either.
     fn degrees(&self, frame: &Frame, lines: &Chebyshev) -> Option<(usize, usize)> {
-        let tolerance = 0.25 * TOLERANCE * self.curves.spec().u_outer;
+        let tolerance = 0.25 * self.tolerance() * self.curves.spec().u_outer;
         let degree = |values: &[f64]| degree_of(&lines.coefficients(values), tolerance);
         let mut degrees = (frame.edges[0].len() - 1, LEAST);
         let columns: Vec<_> = lines.nodes().map(|share| self.at(frame, share)).collect();
