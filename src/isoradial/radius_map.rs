@@ -18,7 +18,7 @@
 //! They need not be right: u is computed for the rays that they lead to. That keeps τ analytic.
 //!
 //! Nodes are Chebyshev's, ends included. The degrees follow from the coefficients along a few lines: from the first
-//! degree on that leaves less than [`TOLERANCE`], or less than the angles' own error. The error is measured at places between the nodes.
+//! degree on that leaves less than [`TOLERANCE`]. The error is measured at places between the nodes.
 //!
 //! The map goes a little beyond both edges, so that whoever interpolates it in the picture need not stop there.
 
@@ -36,9 +36,8 @@ use crate::orbit::path::{Branch, SweptAngles, point_at_angle};
 /// The largest relative error of u that is aimed at: half a unit in the last place of a float of 32 bits.
 const TOLERANCE: f64 = 3e-8;
 
-/// The relative error of u aimed at is no smaller than this many errors of the angles: no polynomial follows their
-/// noise, and halving a part of the axis does not lessen it.
-const NOISE: f64 = 4.0;
+/// The same as a multiple of the error of the method's angles: more nodes do not reduce what that does to u.
+const PER_ANGLE: f64 = 8.0;
 
 /// The degree of the lines that tell the degrees.
 const MOST: usize = 14;
@@ -51,9 +50,9 @@ const LEAST: usize = 3;
 const LONGEST: f64 = 0.5;
 
 /// The shortest part of the axis that is halved.
-const SHORTEST: f64 = 1e-5;
+const SHORTEST: f64 = 1.0 / 512.0;
 
-/// A section that is off by more than this many tolerances is not used.
+/// A section that is off by more than this multiple of what is aimed at is not used.
 const WORST: f64 = 16.0;
 
 /// How far the map goes beyond an edge, as a share of the way between the edges.
@@ -87,10 +86,9 @@ pub(crate) struct RadiusSection {
     x: Span,
     tau: Span,
     degrees: (usize, usize),
-    /// Powers of x by rows, the highest first: the outer edge, the inner edge, u's powers of τ, the lowest first, and
-    /// zeros, [`Self::groups`] fours in each.
-    rows: Vec<[f64; 4]>,
-    groups: usize,
+    /// Four polynomials of x after four, each by its powers, the highest first: the outer edge, the inner edge, and the
+    /// factors of u's powers of τ, the lowest first.
+    powers: Vec<[f64; 4]>,
     error: f64,
 }
 
@@ -206,7 +204,7 @@ impl RadiusMap {
     /// Returns the number of bytes that a frame reads of it.
     pub fn bytes(&self) -> usize {
         let sections = self.sections();
-        sections.map(|section| size_of_val(&*section.rows)).sum()
+        sections.map(|section| size_of_val(&*section.powers)).sum()
     }
 
     fn sections(&self) -> impl Iterator<Item = &RadiusSection> {
@@ -230,12 +228,15 @@ impl RadiusSection {
     pub(crate) fn column(&self, x: f64) -> RadiusColumn<'_> {
         let share = self.x.share(x);
         let mut values = [[0.0; 4]; FOURS];
-        for row in self.rows.chunks_exact(self.groups) {
-            for (value, row) in values.iter_mut().zip(row) {
+        let groups = self.powers.chunks_exact(self.degrees.0 + 1);
+        for (value, powers) in values.iter_mut().zip(groups) {
+            let mut sum = [0.0; 4];
+            for power in powers {
                 for i in 0..4 {
-                    value[i] = value[i] * share + row[i];
+                    sum[i] = sum[i] * share + power[i];
                 }
             }
+            *value = sum;
         }
         RadiusColumn {
             section: self,
@@ -369,9 +370,9 @@ impl<A: SweptAngles> PieceRays<'_, A> {
         }
     }
 
-    /// The relative error of u that is aimed at.
+    /// The largest relative error of u that is aimed at.
     fn tolerance(&self) -> f64 {
-        TOLERANCE.max(NOISE * self.angles.error())
+        TOLERANCE.max(PER_ANGLE * self.angles.error())
     }
 
     /// How much greater u is on the inner edge than on the outer one.
@@ -440,14 +441,13 @@ impl<A: SweptAngles> PieceRays<'_, A> {
             x: frame.x,
             tau: frame.tau,
             degrees,
-            rows: vec![[0.0; 4]; groups * (degrees.0 + 1)],
-            groups,
+            powers: vec![[0.0; 4]; groups * (degrees.0 + 1)],
             error: 0.0,
         };
         let mut set = |column: usize, coefficients: &[f64]| {
             let powers = along_x.powers(coefficients);
             for (i, power) in powers.iter().rev().enumerate() {
-                section.rows[i * groups + column / 4][column % 4] = *power;
+                section.powers[column / 4 * (degrees.0 + 1) + i][column % 4] = *power;
             }
         };
         for (column, edge) in frame.edges.iter().enumerate() {

@@ -29,9 +29,10 @@ pub(super) fn draw(area: &PageArea<'_>, light: &LightPanel) -> Result<(), DrawEr
     let caption = format!(
         "{} at {} × {}, the disk as {source}, hard edges, whole frames in 8-bit colour on one thread. Filled: from the map\n\
          of the camera's radius, left the second frame of a radius, right the first, which builds curves and map. Hollow:\n\
-         each pixel's ray by itself, timed on an even sample. Marker: the largest error over the pixels that show the\n\
-         disk in the right order; whisker: from the 99th percentile. Wrong pixels: the share of {} that miss the disk,\n\
-         see it by mistake, or see another order; of slow methods fewer are compared (see the CSV).",
+         each pixel's ray by itself, timed on an even sample. Marker: the largest error of the pixels that show the\n\
+         disk in the right order; whisker: from the 99th percentile. Luminance: as it follows from radius and redshift at a\n\
+         pixel's centre. Wrong pixels: the share of {} that miss the disk, see it by mistake, or see another order;\n\
+         of slow methods fewer are compared (see the CSV).",
         light.name,
         light.size.0,
         light.size.1,

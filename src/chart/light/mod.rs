@@ -5,8 +5,8 @@
 //! exact method also draw the frame from the map of the camera's radius, as the program does. All have the same
 //! shading: from redshift and flux to the bytes of the picture.
 //!
-//! Measured are the relative error of the redshift and the error of the luminance, of which the hottest ring at rest
-//! has 1, over the pixels that see the disk in the right order (`exact_sights.rs`). The pixels that do not are counted
+//! Measured are the relative error of the redshift and the error of the luminance that follows from radius and redshift
+//! at a pixel's centre (the hottest ring at rest has 1), over the pixels that see the disk in the right order (`exact_sights.rs`). The pixels that do not are counted
 //! as failures. The time of a frame from the map includes the curves and the map where the radius is new. The times of
 //! the other methods are those of an evenly spread sample of pixels, scaled to the frame.
 
@@ -191,7 +191,8 @@ fn time(
                 }
                 LitMethod::Pixels(sight) => Box::new(|| {
                     let byte = |&place: &(u32, u32)| {
-                        let y = sight(place).map_or(0.0, |sight| amplitude(&sight));
+                        let y =
+                            sight(place).map_or(0.0, |sight| amplitude(sight.u, sight.redshift));
                         f64::from(palette.rgb8(y as f32)[0])
                     };
                     sample.iter().map(byte).sum()
