@@ -20,7 +20,8 @@ pub fn write_csv(chart: &ChartData, out: &mut impl Write) -> io::Result<()> {
         "# darkness {} on {}; ratio_to_rk4 = time of RK4 in steps of h={} (whose error_p99 in panel rays is 1e-6) / \
          time of this method, the median over interleaved rounds: above 1 is faster than RK4; \
          ns_per_ray = RK4's median time / ratio_to_rk4; errors in radians \
-         (panel scene: in pixels, times per pixel)",
+         (panel scene: in pixels; panel light: relative for redshifts, and the hottest ring's luminance is 1; in both \
+         times per pixel)",
         env!("CARGO_PKG_VERSION"),
         machine(),
         chart.rays.baseline_step,

@@ -1,13 +1,15 @@
 //! Everything the chart shows, measured in one run.
 
 use super::critical::CriticalPanel;
+use super::light::LightPanel;
 use super::measurement::{ChartEffort, ChartError, ChartProgress, Measurement};
 use super::methods::Tables;
 use super::rays::RayPanel;
 use super::scene::ScenePanel;
+use super::verdict::verdict;
 use crate::scene::Scene;
 
-/// The measurements of all three panels.
+/// The measurements of all panels.
 #[derive(Debug)]
 pub struct ChartData {
     /// Time and error of one swept angle.
@@ -16,10 +18,12 @@ pub struct ChartData {
     pub critical: CriticalPanel,
     /// Time and error of a scene's frame.
     pub scene: ScenePanel,
+    /// Time and error of the same frame, lit.
+    pub light: LightPanel,
 }
 
 impl ChartData {
-    /// Measures all panels. The third one shows `scene`, which the figure calls `name`.
+    /// Measures all panels. The last two show `scene`, which the figure calls `name`.
     ///
     /// # Errors
     /// [`ChartError`] if a table, a thread or a frame cannot be made.
@@ -38,14 +42,24 @@ impl ChartData {
             progress("near-critical rays", 0.45 + 0.05 * share);
         });
         let step = rays.baseline_step;
-        let scene = ScenePanel::measure(scene, name, &tables, step, effort, &|share| {
-            progress("frames", 0.5 + 0.5 * share);
+        let frame = ScenePanel::measure(scene, name.clone(), &tables, step, effort, &|share| {
+            progress("frames", 0.5 + 0.25 * share);
+        })?;
+        let light = LightPanel::measure(scene, name, &tables, step, effort, &|share| {
+            progress("light", 0.75 + 0.25 * share);
         })?;
         Ok(Self {
             rays,
             critical,
-            scene,
+            scene: frame,
+            light,
         })
+    }
+
+    /// Returns in one sentence how long the table takes on this machine for frames that are right, and how long RK4
+    /// takes.
+    pub fn verdict(&self) -> String {
+        verdict(self).join(" ")
     }
 
     /// Returns all measured points, panel by panel.
@@ -58,5 +72,11 @@ impl ChartData {
                 let orders = point.orders.iter().filter(|order| order.count > 0);
                 orders.chain([&point.pixels])
             }))
+            .chain(
+                self.light
+                    .points
+                    .iter()
+                    .flat_map(|point| [&point.redshift, &point.luminance]),
+            )
     }
 }

@@ -4,6 +4,7 @@
 use core::fmt;
 
 use crate::render::RenderError;
+use crate::scene::SceneError;
 use crate::table::SpecError;
 
 /// How thoroughly to measure.
@@ -30,6 +31,9 @@ pub enum ChartError {
     /// A frame could not be rendered.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// The scene has no form that can be measured.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
 }
 
 /// A panel of the figure.
@@ -41,6 +45,8 @@ pub enum Panel {
     Critical,
     /// Time and error of a scene's frame.
     Scene,
+    /// Time and error of a lit frame.
+    Light,
 }
 
 /// A method that computes what happens to a ray.
@@ -120,7 +126,7 @@ pub struct Measurement {
 /// The cost of an answer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Time {
-    /// Nanoseconds per ray; in panel [`Scene`](Panel::Scene), per pixel. This is RK4's median time divided by the ratio
+    /// Nanoseconds per ray; in panels [`Scene`](Panel::Scene) and [`Light`](Panel::Light), per pixel. This is RK4's median time divided by the ratio
     /// below, because a drift of the machine's speed between rounds hardly changes ratios.
     pub nanoseconds: f64,
     /// The median over the rounds of RK4's time divided by this time. RK4 takes the
@@ -174,6 +180,7 @@ impl fmt::Display for Panel {
             Self::Rays => "rays",
             Self::Critical => "critical",
             Self::Scene => "scene",
+            Self::Light => "light",
         })
     }
 }

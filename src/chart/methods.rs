@@ -1,6 +1,7 @@
 //! The methods that are compared, and their settings.
 
 use super::measurement::{ChartEffort, ComparedMethod};
+use crate::light::Sight;
 use crate::orbit::exact::Exact;
 use crate::orbit::integrate::{Adaptive, FixedStep, Scheme};
 use crate::orbit::{Orbits, Ray};
@@ -143,6 +144,17 @@ impl Stepper {
             Self::Fixed(fixed) => pixelwise::sees_in_steps(scene, view, fixed, pixel),
             Self::Adaptive(adaptive) => {
                 pixelwise::sees(scene, view, adaptive, pixel).unwrap_or_default()
+            }
+        }
+    }
+
+    /// Returns what a pixel (column, row) of `scene` sees of the disk: nothing if the method fails.
+    pub fn sight(&self, scene: &Scene, view: &View, pixel: (u32, u32)) -> Option<Sight> {
+        match self {
+            Self::Fixed(fixed) => pixelwise::sight_in_steps(scene, view, fixed, pixel),
+            Self::Adaptive(adaptive) => {
+                let sight = pixelwise::sight(scene, view, adaptive, pixel);
+                sight.unwrap_or_default()
             }
         }
     }

@@ -28,6 +28,18 @@ pub(super) fn two_digits(value: f64) -> String {
     }
 }
 
+/// Formats a positive number with two significant digits, and digits before the point in groups of three.
+pub(super) fn two_significant(value: f64) -> String {
+    let decimals = 1 - libm::floor(libm::log10(value)) as i32;
+    let scale = libm::pow(10.0, f64::from(decimals));
+    let rounded = (value * scale).round() / scale;
+    if rounded < 10.0 {
+        format!("{rounded:.*}", decimals.max(0) as usize)
+    } else {
+        grouped(rounded.round() as usize)
+    }
+}
+
 /// Formats an axis label: powers of ten as `10⁻⁹`, except between 0.1 and 100, and other numbers with up to three
 /// decimals.
 pub(super) fn axis_label(value: f64) -> String {
@@ -61,6 +73,8 @@ mod tests {
         assert_eq!(two_digits(0.5), "0.50");
         assert_eq!(two_digits(0.0), "0");
         assert_eq!(two_digits(3.21e-9), "3.3e-9");
+        let two = [1.13, 4512.0, 12.6, 0.278, 995.0, 9.96].map(two_significant);
+        assert_eq!(two, ["1.1", "4,500", "13", "0.28", "1,000", "10.0"]);
     }
 
     #[test]

@@ -17,7 +17,8 @@ use crate::scene::{DEFAULT_SCENE, Scene};
 
 /// Measure speed against accuracy on this machine, and draw it as an SVG figure
 ///
-/// Every method answers the same questions: single rays, near-critical rays, and SCENE's frame. Times are medians of
+/// Every method answers the same questions: single rays, near-critical rays, and SCENE's
+/// frame, as a mask and in colour. Times are medians of
 /// interleaved repetitions on one thread. Run it on an otherwise idle machine.
 #[derive(Debug, Args)]
 pub(super) struct ChartArgs {
@@ -55,6 +56,7 @@ pub(super) fn run(args: &ChartArgs, report: Report) -> anyhow::Result<()> {
         })?;
     }
     destination.write(svg.as_bytes())?;
+    report.note(chart.verdict());
     let summary = format!("{}\n", chart.scene.summary());
     match destination {
         Destination::Stdout => report.note(summary.trim_end()),

@@ -197,12 +197,37 @@ pub fn sight_along(
 /// [`FixedStep::disk_hit`]).
 #[inline]
 pub fn sees_in_steps(scene: &Scene, view: &View, method: &FixedStep, (i, j): (u32, u32)) -> bool {
+    meeting_in_steps(scene, view, method, view.pixel(i, j)).is_some()
+}
+
+/// Returns what a pixel (column, row) sees of the disk, like [`sight`], by the steps of [`sees_in_steps`].
+#[inline]
+pub fn sight_in_steps(
+    scene: &Scene,
+    view: &View,
+    method: &FixedStep,
+    (i, j): (u32, u32),
+) -> Option<Sight> {
     let pixel = view.pixel(i, j);
+    let (order, u) = meeting_in_steps(scene, view, method, pixel)?;
+    Some(SightGeometry::new(view).sight(pixel, order, u))
+}
+
+/// The order of the image in which a point of the picture shows the disk, and u there.
+#[inline]
+fn meeting_in_steps(
+    scene: &Scene,
+    view: &View,
+    method: &FixedStep,
+    pixel: PixelRay,
+) -> Option<(u32, f64)> {
     let s = pixel.transverse();
     let (u_inner, u_outer) = (1.0 / scene.disk().inner, 1.0 / scene.disk().outer);
-    Ray::new(view.u0(), view.dudphi(pixel)).is_ok_and(|ray| {
-        s > 0.0 && method.disk_hit(ray, view.plane_crossing(pixel.ta, s), u_inner, u_outer)
-    })
+    let ray = Ray::new(view.u0(), view.dudphi(pixel)).ok()?;
+    if s <= 0.0 {
+        return None;
+    }
+    method.disk_meeting(ray, view.plane_crossing(pixel.ta, s), u_inner, u_outer)
 }
 
 /// Where a ray meets the disk first.

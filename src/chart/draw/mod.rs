@@ -1,6 +1,7 @@
 //! The chart as one SVG figure, drawn by plotters.
 
 mod critical;
+mod light;
 mod plot;
 mod rays;
 mod scene;
@@ -10,13 +11,15 @@ use plotters::prelude::*;
 
 use super::data::ChartData;
 use super::machine::machine;
+use super::verdict::verdict;
 pub use plot::DrawError;
 use style::{GREY, bold, font, px};
 
-/// The size of the page as shown, and where on it the second and the third panel begin, below the title.
-const SIZE: (i32, i32) = (1000, 1850);
+/// The size of the page as shown, and where on it the panels after the first begin, below the title.
+const SIZE: (i32, i32) = (1000, 2140);
 const CRITICAL: i32 = 635;
 const SCENE: i32 = CRITICAL + 580;
+const LIGHT: i32 = SCENE + 420;
 
 /// Draws the figure and returns it as the text of an SVG file.
 ///
@@ -29,14 +32,19 @@ pub fn svg(chart: &ChartData) -> Result<String, DrawError> {
         let page = SVGBackend::with_string(&mut svg, size).into_drawing_area();
         page.fill(&WHITE)?;
         let title = "Light around a black hole: speed against accuracy";
-        let below = page.margin(px(8), 0, 0, 0).titled(title, bold(21.0))?;
+        let mut below = page.margin(px(8), 0, 0, 0).titled(title, bold(21.0))?;
+        for line in verdict(chart) {
+            below = below.titled(&line, font(14.0, BLACK))?;
+        }
         let made = format!("darkness {} on {}", env!("CARGO_PKG_VERSION"), machine());
         let below = below.titled(&made, font(12.0, GREY))?;
-        let (above_scene, scene) = below.split_vertically(px(SCENE));
+        let (above_light, light) = below.split_vertically(px(LIGHT));
+        let (above_scene, scene) = above_light.split_vertically(px(SCENE));
         let (rays, critical) = above_scene.split_vertically(px(CRITICAL));
         rays::draw(&rays, &chart.rays)?;
         critical::draw(&critical, &chart.critical)?;
         scene::draw(&scene, &chart.scene)?;
+        light::draw(&light, &chart.light)?;
         page.present()?;
     }
     // The first tag gives the size at which the figure is shown, beside that of its coordinates.
@@ -49,8 +57,10 @@ pub fn svg(chart: &ChartData) -> Result<String, DrawError> {
 mod tests {
     use super::*;
     use crate::chart::critical::CriticalPanel;
+    use crate::chart::light::LightPanel;
     use crate::chart::rays::RayPanel;
     use crate::chart::scene::ScenePanel;
+    use crate::scene::Light;
 
     #[test]
     fn a_figure_without_measurements_is_drawn() {
@@ -67,6 +77,13 @@ mod tests {
                 size: (1, 1),
                 tolerance: 1e-3,
                 places: 0,
+                compared: 0,
+                points: Vec::new(),
+            },
+            light: LightPanel {
+                name: "<&>".to_owned(),
+                size: (1, 1),
+                light: Light::Bolometric,
                 compared: 0,
                 points: Vec::new(),
             },

@@ -118,7 +118,7 @@ pub(super) fn decades(values: impl Iterator<Item = f64>) -> Range<f64> {
 }
 
 /// Returns the range of all positive finite `values`, and 1 … 10 without any.
-pub(super) fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
+fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
     let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
     for value in values.filter(|value| *value > 0.0 && value.is_finite()) {
         (low, high) = (low.min(value), high.max(value));
@@ -204,7 +204,10 @@ pub(super) fn plot(
         let failures = failures.map(|&(x, row)| ((x, y.failure(row)), style.failed()));
         let markers = points.map(|place| (place, style)).chain(failures);
         plot.draw_series(markers.map(|(place, style)| {
-            EmptyElement::at(place) + Polygon::new(style.outline((0, 0)), style.colour.filled())
+            let (inside, outline) = style.fill();
+            EmptyElement::at(place)
+                + Polygon::new(style.outline((0, 0)), inside)
+                + PathElement::new(style.closed_outline((0, 0)), outline)
         }))?;
     }
     Ok(())
@@ -219,9 +222,11 @@ pub(super) fn legend(area: &PageArea<'_>, lines: &[PlotLine]) -> Result<(), Draw
         let stroke = style.colour.stroke_width(style.width);
         let entry = chart.draw_series(LineSeries::new([(0, 0)], TRANSPARENT))?;
         entry.label(&line.label).legend(move |place| {
+            let (inside, outline) = style.fill();
             EmptyElement::at(place)
                 + DashedPathElement::new([(0, 0), (LENGTH, 0)], dash, gap, stroke)
-                + Polygon::new(style.outline((LENGTH / 2, 0)), style.colour.filled())
+                + Polygon::new(style.outline((LENGTH / 2, 0)), inside)
+                + PathElement::new(style.closed_outline((LENGTH / 2, 0)), outline)
         });
     }
     chart

@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use plotters::style::BLACK;
 
-use super::plot::{DrawError, ErrorAxis, PageArea, PlotLine, around, heading, legend, plot};
+use super::plot::{DrawError, ErrorAxis, PageArea, PlotLine, decades, heading, legend, plot};
 use super::style::{SeriesStyle, px};
 use crate::chart::measurement::ComparedMethod;
 use crate::chart::number_format::grouped;
@@ -27,48 +27,40 @@ const ENDS: [i32; WRONG] = [px(222), px(400), px(578)];
 /// Draws the panel.
 pub(super) fn draw(area: &PageArea<'_>, scene: &ScenePanel) -> Result<(), DrawError> {
     let caption = format!(
-        "{} at {} × {}, whole frames on one thread. Upper row: tables and the exact method give isoradial\n\
-         curves, at several tolerances, and the frame is filled between them. Lower row: Euler, RK4 and adaptive\n\
-         step along every pixel's ray, timed on an even sample. Displacement: the largest of an edge at\n\
-         {} angles; line: the {:?} pixels allowed; cross at the top: an edge was lost. Wrong pixels: the share of\n\
-         {} that differ from their exact rays; of slow methods fewer are compared (see the CSV).",
+        "{} at {} × {}, hard edges, whole frames on one thread. Tables and the exact method give isoradial\n\
+         curves right to the {:?} pixels allowed (line), and the frame is filled between them. Euler, RK4 and adaptive\n\
+         step along every pixel's ray, timed on an even sample. Displacement: the largest of an edge at {} angles;\n\
+         cross at the top: an edge was lost. Wrong pixels: the share of {} that differ from their exact rays; of slow methods fewer are compared (see the CSV).",
         scene.name,
         scene.size.0,
         scene.size.1,
-        scene.places,
         scene.tolerance,
+        scene.places,
         grouped(scene.compared as usize)
     );
     let title = "Scene: what a frame costs, and how far its edges are displaced";
     let (area, legend_area) = heading(area, title, &caption)?;
-    let cells = area.split_by_breakpoints(ENDS, [area.dim_in_pixel().1.cast_signed() / 2]);
-    // Frames from curves all take about the same time, and the others a hundred to ten thousand times as long.
-    for (cells, from_curves) in cells.chunks_exact(COLUMNS.len()).zip([true, false]) {
-        let points = scene
-            .points
-            .iter()
-            .filter(|point| point.nodes.is_some() == from_curves);
-        let mut points: Vec<_> = points.collect();
-        // Finer settings have more nodes, or take more time.
-        points.sort_by(|a, b| {
-            let times = a.milliseconds.total_cmp(&b.milliseconds);
-            a.nodes.cmp(&b.nodes).then(times)
-        });
-        let times = around(points.iter().map(|point| point.milliseconds));
-        let times = 0.96 * times.start..1.04 * times.end;
-        let columns: [_; COLUMNS.len()] =
-            core::array::from_fn(|column| lines(scene, &points, column, &times));
-        let displacements = ErrorAxis::new(columns[..WRONG].iter().flatten());
-        let shares = ErrorAxis::new(&columns[WRONG]);
-        for (column, (title, name)) in COLUMNS.into_iter().enumerate() {
-            let y = if column == WRONG {
-                &shares
-            } else {
-                &displacements
-            };
-            let x = (&times, "time (milliseconds)");
-            plot(&cells[column], title, x, (y, name), &columns[column])?;
-        }
+    let cells = area.split_by_breakpoints(ENDS, [0_i32; 0]);
+    // Curves at other tolerances than the scene's are in the CSV alone.
+    let points = scene.points.iter().filter(|point| {
+        let tolerance = point.curve_tolerance;
+        tolerance.is_none_or(|tolerance| tolerance == scene.tolerance)
+    });
+    let mut points: Vec<_> = points.collect();
+    points.sort_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds));
+    let times = decades(points.iter().map(|point| point.milliseconds));
+    let columns: [_; COLUMNS.len()] =
+        core::array::from_fn(|column| lines(scene, &points, column, &times));
+    let displacements = ErrorAxis::new(columns[..WRONG].iter().flatten());
+    let shares = ErrorAxis::new(&columns[WRONG]);
+    for (column, (title, name)) in COLUMNS.into_iter().enumerate() {
+        let y = if column == WRONG {
+            &shares
+        } else {
+            &displacements
+        };
+        let x = (&times, "time (milliseconds)");
+        plot(&cells[column], title, x, (y, name), &columns[column])?;
     }
     legend(&legend_area, &lines(scene, &[], 0, &(1.0..1.0)))
 }

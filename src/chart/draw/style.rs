@@ -53,6 +53,7 @@ pub(super) struct SeriesStyle {
     /// The lengths of a dash and of a gap, in pixels of the drawing.
     pub(super) dash: (u32, u32),
     marker: Marker,
+    is_hollow: bool,
 }
 
 /// A dash longer than any line.
@@ -61,17 +62,15 @@ const SOLID: (u32, u32) = (100_000, 1);
 impl SeriesStyle {
     /// Returns the style and the label of a method.
     pub(super) fn of(method: ComparedMethod) -> (Self, &'static str) {
-        let up = (3, 10.0, 0.5, 0.0);
+        let triangle = |turn| (3, 10.0, 0.5, turn);
         let (colour, marker, dash, label) = match method {
             ComparedMethod::Euler => (ORANGE, (12, 7.0, 0.97, 0.0), SOLID, "Euler"),
             ComparedMethod::Rk4 => (VERMILION, (4, 9.0, 0.71, 45.0), SOLID, "RK4"),
             ComparedMethod::Adaptive => (PURPLE, (4, 10.0, 0.65, 0.0), SOLID, "adaptive (DOP853)"),
-            ComparedMethod::TableScaled => {
-                (SKY, (3, 10.0, 0.5, 180.0), (16, 6), "tables of other sizes")
-            }
-            ComparedMethod::TableDraft => (BLUE, up, (14, 5), "table draft"),
-            ComparedMethod::TableStandard => (BLUE, up, SOLID, "table standard"),
-            ComparedMethod::TableFine => (BLUE, up, (4, 4), "table fine"),
+            ComparedMethod::TableScaled => (SKY, triangle(180.0), (16, 6), "tables of other sizes"),
+            ComparedMethod::TableDraft => (BLUE, triangle(-90.0), (14, 5), "table draft"),
+            ComparedMethod::TableStandard => (BLUE, triangle(0.0), SOLID, "table standard"),
+            ComparedMethod::TableFine => (BLUE, triangle(90.0), (4, 4), "table fine"),
             ComparedMethod::Exact => (BLACK, (5, 11.0, 0.4, 0.0), SOLID, "exact"),
         };
         let mut style = Self::line(colour, 3);
@@ -86,7 +85,20 @@ impl SeriesStyle {
             width,
             dash: SOLID,
             marker: (0, 0.0, 0.0, 0.0),
+            is_hollow: false,
         }
+    }
+
+    /// Returns the same style with hollow markers.
+    pub(super) fn hollow(self) -> Self {
+        let is_hollow = true;
+        Self { is_hollow, ..self }
+    }
+
+    /// Returns the colours of the marker's inside and of its outline.
+    pub(super) fn fill(self) -> (ShapeStyle, ShapeStyle) {
+        let inside = if self.is_hollow { WHITE } else { self.colour };
+        (inside.filled(), self.colour.stroke_width(3))
     }
 
     /// Returns the same style with a cross for a marker.
@@ -106,5 +118,12 @@ impl SeriesStyle {
             (centre.0 + x.round() as i32, centre.1 + y.round() as i32)
         };
         (0..2 * corners).map(corner).collect()
+    }
+
+    /// Returns the outline with its first point again at its end.
+    pub(super) fn closed_outline(self, centre: (i32, i32)) -> Vec<(i32, i32)> {
+        let mut outline = self.outline(centre);
+        outline.extend(outline.first().copied());
+        outline
     }
 }

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::super::methods::Stepper;
+use super::super::pixel_choice::{affordable, rows};
 use crate::orbit::OrbitError;
 use crate::orbit::exact::Exact;
 use crate::render::mask::WHITE;
@@ -18,12 +19,9 @@ impl ExactPixels {
     /// Computes rows of `scene` with the exact method, on all threads: every row, or evenly spread rows with at most
     /// `most` pixels in total, but at least one row.
     pub(super) fn new(scene: &Scene, view: &View, most: u64) -> Result<Self, RenderError> {
-        let count = (most / u64::from(view.width())).clamp(1, u64::from(view.height()));
-        let height = u64::from(view.height());
-        let rows: Result<Vec<_>, _> = (0..count)
+        let rows: Result<Vec<_>, _> = rows(view, most)
             .into_par_iter()
-            .map(|k| {
-                let j = ((2 * k + 1) * height / (2 * count)) as u32;
+            .map(|j| {
                 let row: Result<Vec<u8>, OrbitError> = (0..view.width())
                     .map(|i| {
                         let sees = pixelwise::sees(scene, view, &Exact, (i, j))?;
@@ -61,9 +59,7 @@ impl ExactPixels {
         stepper: &Stepper,
         budget: u64,
     ) -> (u64, u64) {
-        let affordable = (budget / u64::from(view.width())).max(1) as usize;
-        let stride = self.rows.len().div_ceil(affordable);
-        let chosen: Vec<_> = self.rows.iter().skip(stride / 2).step_by(stride).collect();
+        let chosen = affordable(&self.rows, view, budget);
         let wrong = chosen.par_iter().map(|(j, truth)| {
             let row = (0..view.width()).zip(truth);
             row.filter(|(i, truth)| stepper.sees(scene, view, (*i, *j)) != (**truth == WHITE))
@@ -72,23 +68,6 @@ impl ExactPixels {
         let compared = chosen.iter().map(|(_, row)| row.len() as u64).sum();
         (wrong.sum(), compared)
     }
-}
-
-/// Returns `count` pixels spread evenly over the picture, the same on every machine. They follow the additive sequence
-/// with steps 1/g and 1/g², where g³ = g + 1.
-pub(super) fn sample(view: &View, count: u32) -> Vec<(u32, u32)> {
-    let place = |k: u32, step: f64, side: u32| {
-        let x = 0.5 + f64::from(k) * step;
-        (((x - x.floor()) * f64::from(side)) as u32).min(side - 1)
-    };
-    (0..count)
-        .map(|k| {
-            (
-                place(k, 0.754_877_666_246_692_7, view.width()),
-                place(k, 0.569_840_290_998_053_2, view.height()),
-            )
-        })
-        .collect()
 }
 
 /// Counts the pixels that see the disk, out of `pixels`.
@@ -121,15 +100,5 @@ mod tests {
         assert!(wrong > 0 && compared == 160 * 10, "{wrong} of {compared}");
         let adaptive = Stepper::adaptive(1e-9);
         assert_eq!(truth.wrong_of(&scene, &view, &adaptive, 1), (0, 160));
-    }
-
-    #[test]
-    fn a_sample_is_spread_over_the_picture() {
-        let scene = Scene::builtin("classic").unwrap();
-        let view = View::new(&scene);
-        let pixels = sample(&view, 256);
-        let left = pixels.iter().filter(|(i, _)| *i < view.width() / 2);
-        let upper = pixels.iter().filter(|(_, j)| *j < view.height() / 2);
-        assert!((120..=136).contains(&left.count()) && (120..=136).contains(&upper.count()));
     }
 }

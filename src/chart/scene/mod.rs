@@ -18,6 +18,7 @@ use super::measurement::{
 };
 use super::methods::Tables;
 use super::number_format::{grouped, two_digits};
+use super::pixel_choice::sample;
 use crate::render::mask;
 use crate::scene::{Scene, View};
 use edges::{Displacements, ExactEdges, ORDERS};
@@ -50,6 +51,8 @@ pub struct FramePoint {
     pub milliseconds: f64,
     /// The number of the curves' nodes, for methods that build curves.
     pub nodes: Option<usize>,
+    /// The tolerance of the curves in pixels, for methods that build curves.
+    pub curve_tolerance: Option<f64>,
     /// The size in bytes of the table that the curves were built from, if any.
     pub table_bytes: Option<usize>,
     /// The displacements of each order's edges.
@@ -206,7 +209,7 @@ fn time(
     bounds: &SceneEffort,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Vec<Time> {
-    let sample = frames::sample(view, bounds.sampled_pixels);
+    let sample = sample(view, bounds.sampled_pixels);
     let pixels = f64::from(view.width()) * f64::from(view.height());
     let mut contenders: Vec<_> = settings
         .iter()
@@ -262,11 +265,11 @@ fn point(
     budget: u64,
 ) -> Result<FramePoint, ChartError> {
     let mut words = setting.setting.clone();
-    let mut nodes = None;
+    let (mut nodes, mut curve_tolerance) = (None, None);
     let (displacements, (wrong, compared)) = match &setting.renders {
         FrameMethod::Curves { angles, spec } => {
             let curves = angles.build(spec);
-            nodes = Some(curves.nodes());
+            (nodes, curve_tolerance) = (Some(curves.nodes()), Some(spec.tolerance));
             words = format!("{words} nodes={} bytes={}", curves.nodes(), curves.bytes());
             if let Some(bytes) = setting.table_bytes {
                 words = format!("{words} table-bytes={bytes}");
@@ -293,6 +296,7 @@ fn point(
         method: setting.method,
         milliseconds: time.nanoseconds * pixels * 1e-6,
         nodes,
+        curve_tolerance,
         table_bytes: setting.table_bytes,
         pixels: row("order=all".into(), None, wrong, compared),
         orders: core::array::from_fn(|order| {

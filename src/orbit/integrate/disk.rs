@@ -1,4 +1,4 @@
-//! Tells whether a ray meets the disk, in steps of one length: the renderer's baseline.
+//! Tells whether and where a ray meets the disk, in steps of one length: the renderer's baseline.
 
 use core::f64::consts::PI;
 
@@ -7,31 +7,44 @@ use super::flight::State;
 use crate::orbit::Ray;
 
 impl FixedStep {
-    /// Returns whether a ray meets the disk: whether its u lies between `u_outer` and `u_inner` at any of the orbit
-    /// angles `first_crossing + kπ`, k = 0, 1, 2 …, where it passes the disk's plane.
+    /// Returns whether a ray meets the disk: whether [`Self::disk_meeting`] finds a place.
+    pub fn disk_hit(&self, ray: Ray, first_crossing: f64, u_inner: f64, u_outer: f64) -> bool {
+        self.disk_meeting(ray, first_crossing, u_inner, u_outer)
+            .is_some()
+    }
+
+    /// Returns where a ray meets the disk first: the order of the image, and u. That is where its u lies between `u_outer` and `u_inner` at any of the orbit
+    /// angles `first_crossing + kπ`, k = 0, 1, 2 …, where it passes the disk's plane. The order counts the crossings before.
     ///
     /// `first_crossing` is in [0, π). At 0 the ray starts in the plane, which is not a crossing, and its first crossing
     /// is at π. Between two crossings the steps are equal, of `h` or a little less, so that each crossing is the end of
-    /// a step and nothing is interpolated. Returns false for a ray that ends first, for du/dφ = ±∞ (which never meets
+    /// a step and nothing is interpolated. Returns `None` for a ray that ends first, for du/dφ = ±∞ (which never meets
     /// the plane), and after `max_steps`.
-    pub fn disk_hit(&self, ray: Ray, first_crossing: f64, u_inner: f64, u_outer: f64) -> bool {
+    #[inline]
+    pub fn disk_meeting(
+        &self,
+        ray: Ray,
+        first_crossing: f64,
+        u_inner: f64,
+        u_outer: f64,
+    ) -> Option<(u32, f64)> {
         match self.scheme {
-            Scheme::Euler => self.disk_hit_by(euler, ray, first_crossing, u_inner, u_outer),
-            Scheme::Rk4 => self.disk_hit_by(rk4, ray, first_crossing, u_inner, u_outer),
+            Scheme::Euler => self.disk_meeting_by(euler, ray, first_crossing, u_inner, u_outer),
+            Scheme::Rk4 => self.disk_meeting_by(rk4, ray, first_crossing, u_inner, u_outer),
         }
     }
 
     #[inline]
-    fn disk_hit_by(
+    fn disk_meeting_by(
         &self,
         step: impl Fn(State, f64) -> State,
         ray: Ray,
         first_crossing: f64,
         u_inner: f64,
         u_outer: f64,
-    ) -> bool {
+    ) -> Option<(u32, f64)> {
         if self.h.is_nan() || self.h <= 0.0 {
-            return false;
+            return None;
         }
         // Inside the photon sphere rays that go inward do not turn, outside it rays that go outward do not.
         let lost_above = u_inner.max(2.0 / 3.0);
@@ -41,6 +54,7 @@ impl FixedStep {
             w: ray.dudphi(),
         };
         let mut left = self.max_steps;
+        let mut order = 0;
         let mut stretch = if first_crossing > 0.0 {
             first_crossing
         } else {
@@ -49,7 +63,7 @@ impl FixedStep {
         loop {
             let steps = (stretch / self.h).ceil().max(1.0);
             if steps > left as f64 {
-                return false;
+                return None;
             }
             let h = stretch / steps;
             left -= steps as u64;
@@ -59,12 +73,13 @@ impl FixedStep {
                 // A state that overflowed to NaN is not in flight either.
                 let in_flight = u > 0.0 && u < 1.0;
                 if !in_flight || (w < 0.0 && u < lost_below) || (w > 0.0 && u > lost_above) {
-                    return false;
+                    return None;
                 }
             }
             if u_outer <= state.u && state.u <= u_inner {
-                return true;
+                return Some((order, state.u));
             }
+            order += 1;
             stretch = PI;
         }
     }

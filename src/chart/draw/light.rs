@@ -1,0 +1,92 @@
+//! The fourth panel: a lit frame's time against the errors of its redshifts and of its colours.
+
+use super::plot::{DrawError, ErrorAxis, PageArea, PlotLine, decades, heading, legend, plot};
+use super::style::{SeriesStyle, px};
+use crate::chart::light::{LightPanel, LightPoint, LitFrame};
+use crate::chart::measurement::ComparedMethod;
+use crate::chart::number_format::grouped;
+use crate::scene::Light;
+
+/// The titles of the columns and the names of their y axes.
+const COLUMNS: [(&str, &str); 3] = [
+    ("redshift", "relative error of the redshift"),
+    ("colour", "error of the luminance (hottest ring: 1)"),
+    ("wrong pixels", "wrong pixels (share)"),
+];
+
+/// The column of the wrong pixels.
+const WRONG: usize = 2;
+
+/// Where the columns end.
+const ENDS: [i32; WRONG] = [px(262), px(524)];
+
+/// Draws the panel.
+pub(super) fn draw(area: &PageArea<'_>, light: &LightPanel) -> Result<(), DrawError> {
+    let source = match light.light {
+        Light::BlackBody { temperature } => format!("a black body of {temperature} K"),
+        Light::Bolometric => "grey light of all wavelengths".to_owned(),
+    };
+    let caption = format!(
+        "{} at {} × {}, the disk as {source}, hard edges, whole frames in 8-bit colour on one thread. Filled: from the map\n\
+         of the camera's radius, left the second frame of a radius, right the first, which builds curves and map. Hollow:\n\
+         each pixel's ray by itself, timed on an even sample. Marker: the largest error of the pixels that show the\n\
+         disk in the right order; whisker: from the 99th percentile. Luminance: as it follows from radius and redshift at a\n\
+         pixel's centre. Wrong pixels: the share of {} that miss the disk, see it by mistake, or see another order;\n\
+         of slow methods fewer are compared (see the CSV).",
+        light.name,
+        light.size.0,
+        light.size.1,
+        grouped(light.compared as usize)
+    );
+    let title = "Light: what a frame in colour costs, and how far redshift and colour are off";
+    let (area, legend_area) = heading(area, title, &caption)?;
+    let cells = area.split_by_breakpoints(ENDS, [0_i32; 0]);
+    let times = decades(light.points.iter().map(|point| point.milliseconds));
+    for (column, (title, name)) in COLUMNS.into_iter().enumerate() {
+        let lines = lines(&light.points, column);
+        let y = ErrorAxis::new(&lines);
+        let x = (&times, "time (milliseconds)");
+        plot(&cells[column], title, x, (&y, name), &lines)?;
+    }
+    legend(&legend_area, &lines(&[], 0))
+}
+
+/// Returns the lines of a column: every method, as far as it is drawn pixel by pixel and from the map.
+fn lines(points: &[LightPoint], column: usize) -> Vec<PlotLine> {
+    let mut lines = Vec::new();
+    let pixelwise = |frame| frame == LitFrame::PixelByPixel;
+    for method in ComparedMethod::ALL {
+        let (style, label) = SeriesStyle::of(method);
+        let kinds = match method {
+            ComparedMethod::Euler | ComparedMethod::TableScaled => vec![],
+            ComparedMethod::Rk4 | ComparedMethod::Adaptive => vec![(style, label.to_owned(), true)],
+            _ => vec![
+                (style, format!("{label}, map"), false),
+                (style.hollow(), format!("{label}, by pixel"), true),
+            ],
+        };
+        for (style, label, is_pixelwise) in kinds {
+            let of = points
+                .iter()
+                .filter(|point| point.method == method && pixelwise(point.frame) == is_pixelwise);
+            let mut of: Vec<_> = of.collect();
+            of.sort_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds));
+            let mut line = PlotLine::new((style, &label), Vec::new());
+            for point in of {
+                let time = point.milliseconds;
+                if column == WRONG {
+                    line.points.push((time, point.wrong_share()));
+                    continue;
+                }
+                let row = [&point.redshift, &point.luminance][column];
+                let Some(error) = row.error else { continue };
+                let whisker = SeriesStyle::line(style.colour, 2);
+                let ends = vec![(time, error.p99), (time, error.max)];
+                lines.push(PlotLine::new((whisker, ""), ends));
+                line.points.push((time, error.max));
+            }
+            lines.push(line);
+        }
+    }
+    lines
+}
