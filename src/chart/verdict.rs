@@ -12,11 +12,11 @@ const REDSHIFT: f64 = 1e-6;
 /// The verdict's two parts: on edges, and on colours. Joined by a space they are one sentence.
 pub(super) fn verdict(chart: &ChartData) -> [String; 2] {
     let (scene, light) = (&chart.scene, &chart.light);
-    let edges = race(scene.points.iter().filter_map(|point| {
+    let edges = race(&scene.points.iter().filter_map(|point| {
         let is_right = point.displacement() <= scene.tolerance;
         is_right.then_some((point.method, point.milliseconds))
     }));
-    let colours = race(light.points.iter().filter_map(|point| {
+    let colours = race(&light.points.iter().filter_map(|point| {
         let error = point.redshift.error?.max;
         // The table's frame is drawn as the first one of a film is.
         let is_told = point.frame == LitFrame::NewRadius || point.method == ComparedMethod::Rk4;
@@ -32,7 +32,7 @@ pub(super) fn verdict(chart: &ChartData) -> [String; 2] {
 }
 
 /// Compares the fastest frame by a table and by RK4 among those that are right.
-fn race(right: impl Iterator<Item = (ComparedMethod, f64)> + Clone) -> String {
+fn race(right: &(impl Iterator<Item = (ComparedMethod, f64)> + Clone)) -> String {
     let fastest = |is_of: fn(ComparedMethod) -> bool| {
         let of = right.clone().filter(|(method, _)| is_of(*method));
         of.map(|(_, time)| time).min_by(f64::total_cmp)
