@@ -1,0 +1,267 @@
+//! The light of pixels that the disk covers in part, against averages over many samples of their squares.
+
+use std::path::Path;
+
+use darkness::light::rec709::{linear_rgb, luminance};
+use darkness::light::{Radiance, flux};
+use darkness::orbit::exact::Exact;
+use darkness::render::pixelwise;
+use darkness::scene::{Animation, Layer, Light, Scene, View};
+
+use crate::lit::Layers;
+use crate::tables::table;
+
+const LIT: Light = Light::BlackBody {
+    temperature: 7000.0,
+};
+
+/// Differences of a frame's light from averages, over the pixels that are not dark in either.
+#[derive(Debug, Default)]
+struct Apart {
+    pixels: usize,
+    worst: f64,
+    worst_at: ((u32, u32), f64, f64),
+    squares: f64,
+    /// The whole light of the frame, and of the averages.
+    whole: (f64, f64),
+}
+
+impl Apart {
+    fn add(&mut self, place: (u32, u32), found: f64, known: f64) {
+        self.whole.0 += found;
+        self.whole.1 += known;
+        if found == 0.0 && known == 0.0 {
+            return;
+        }
+        self.pixels += 1;
+        let difference = (found - known).abs();
+        self.squares += difference * difference;
+        if difference > self.worst {
+            self.worst = difference;
+            self.worst_at = (place, found, known);
+        }
+    }
+
+    fn rms(&self) -> f64 {
+        (self.squares / self.pixels as f64).sqrt()
+    }
+
+    /// Relative.
+    fn of_whole(&self) -> f64 {
+        (self.whole.0 / self.whole.1 - 1.0).abs()
+    }
+
+    fn check(&self, name: &str, (worst, rms, whole): (f64, f64, f64)) {
+        let (found_rms, found_whole) = (self.rms(), self.of_whole());
+        println!("{name}: rms {found_rms:.2e}, whole {found_whole:.2e}, {self:?}");
+        assert!(
+            self.worst <= worst && found_rms <= rms && found_whole <= whole,
+            "{name}: rms {found_rms}, whole {found_whole}, {self:?}"
+        );
+    }
+}
+
+/// The worst pixel, the rms over the pixels that are lit, and the whole light.
+const MOST: (f64, f64, f64) = (0.015, 5e-4, 1e-4);
+
+/// The averages of `average-classic.csv`: for each lit pixel, g⁴F and the luminance.
+fn averages() -> Vec<((u32, u32), f64, [f64; 3])> {
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/light/average-classic.csv");
+    let text = std::fs::read_to_string(path).unwrap();
+    let rows = text.lines().filter(|line| !line.starts_with('#')).skip(1);
+    rows.map(|line| {
+        let row: Vec<f64> = line.split(',').map(|v| v.parse().expect(line)).collect();
+        (
+            (row[0] as u32, row[1] as u32),
+            row[3],
+            [row[4], row[5], row[6]],
+        )
+    })
+    .collect()
+}
+
+fn classic(light: Light) -> Scene {
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/masks/coverage-classic.toml");
+    Scene::load(path).unwrap().with_light(Some(light)).unwrap()
+}
+
+/// Compares a frame's light, as `of` tells it, with averages; what has none is dark.
+fn against<const N: usize>(
+    name: &str,
+    scene: &Scene,
+    known: &[((u32, u32), [f64; N])],
+    of: impl Fn([f64; 3]) -> [f64; N],
+    most: [(f64, f64, f64); N],
+) {
+    let layers = Layers::rendered(scene, table("standard").lookup());
+    let (width, height) = (scene.image().width, scene.image().height);
+    let mut apart: [Apart; N] = core::array::from_fn(|_| Apart::default());
+    let mut truth = vec![[0.0; N]; (width * height) as usize];
+    for &((i, j), values) in known {
+        truth[(j * width + i) as usize] = values;
+    }
+    for (pixel, known) in truth.iter().enumerate() {
+        let place = (pixel as u32 % width, pixel as u32 / width);
+        let found = of(layers.colour(pixel));
+        for k in 0..N {
+            apart[k].add(place, found[k], known[k]);
+        }
+    }
+    for (k, apart) in apart.iter().enumerate() {
+        apart.check(&format!("{name}, {k}"), most[k]);
+    }
+}
+
+#[test]
+fn luminances_equal_the_averages_of_the_reference() {
+    let known: Vec<_> = averages()
+        .into_iter()
+        .map(|(place, _, xyz)| (place, [xyz[1]]))
+        .collect();
+    against(
+        "luminance",
+        &classic(LIT),
+        &known,
+        |rgb| [luminance(rgb)],
+        [MOST],
+    );
+}
+
+#[test]
+fn colours_equal_the_averages_of_the_reference() {
+    let known: Vec<_> = averages()
+        .into_iter()
+        .map(|(place, _, xyz)| (place, linear_rgb(xyz)))
+        .collect();
+    against("colour", &classic(LIT), &known, |rgb| rgb, [MOST; 3]);
+}
+
+#[test]
+fn bolometric_light_equals_the_averages_of_the_reference() {
+    let known: Vec<_> = averages()
+        .into_iter()
+        .map(|(place, grey, _)| (place, [grey]))
+        .collect();
+    against(
+        "bolometric",
+        &classic(Light::Bolometric),
+        &known,
+        |rgb| [rgb[1]],
+        [MOST],
+    );
+}
+
+/// The mean light of a pixel over `side × side` places of its square, each by its own exact ray.
+fn sampled(
+    scene: &Scene,
+    view: &View,
+    radiance: &Radiance,
+    (i, j): (u32, u32),
+    side: u32,
+) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    let share = |k: u32| (f64::from(k) + 0.5) / f64::from(side);
+    for (a, b) in (0..side).flat_map(|b| (0..side).map(move |a| (a, b))) {
+        let ray = view.ray_at(
+            view.x_at(f64::from(i) + share(a)),
+            view.y_at(f64::from(j) + share(b)),
+        );
+        if let Some(sight) = pixelwise::sight_along(scene, view, &Exact, ray).unwrap() {
+            let amplitude = sight.redshift * sight.redshift * flux::signed_root(sight.u);
+            for (sum, c) in sum.iter_mut().zip(radiance.rgb(amplitude)) {
+                *sum += c / f64::from(side * side);
+            }
+        }
+    }
+    sum
+}
+
+/// Whether a disk of this scene may touch a pixel: by smooth coverage, or by any of some places.
+fn lit_pixels(scene: &Scene, layers: &Layers) -> Vec<(u32, u32)> {
+    let (width, height) = (scene.image().width, scene.image().height);
+    let shares = layers.plane(Layer::Coverage);
+    let near = |i: u32, j: u32| {
+        let columns = i.saturating_sub(1)..(i + 2).min(width);
+        let mut rows = j.saturating_sub(1)..(j + 2).min(height);
+        rows.any(|row| {
+            columns
+                .clone()
+                .any(|column| shares[(row * width + column) as usize] > 0.0)
+        })
+    };
+    let all = (0..height).flat_map(|j| (0..width).map(move |i| (i, j)));
+    all.filter(|&(i, j)| near(i, j)).collect()
+}
+
+/// Compares the light of some of a frame's pixels, every `step`th near the disk, with `side²` samples.
+fn against_samples(name: &str, scene: &Scene, (side, step): (u32, usize), most: (f64, f64, f64)) {
+    let view = View::new(scene);
+    let radiance = Radiance::new(scene.light().unwrap());
+    let layers = Layers::rendered(scene, table("standard").lookup());
+    let mut apart = Apart::default();
+    for &(i, j) in lit_pixels(scene, &layers).iter().step_by(step) {
+        let known = sampled(scene, &view, &radiance, (i, j), side);
+        let pixel = (j * scene.image().width + i) as usize;
+        apart.add((i, j), luminance(layers.colour(pixel)), luminance(known));
+    }
+    apart.check(name, most);
+}
+
+/// A lit scene of 160 × 90 pixels, from `radius` at an inclination, that many pixels from edge to edge of the disk.
+fn distant(radius: f64, inclination: f64, pixels: f64, aside: f64) -> Scene {
+    let (sine, cosine) = libm::sincos(inclination.to_radians());
+    let half = libm::atan(0.5 * 90.0 * 24.0 / radius / pixels);
+    // Off the middle by a part of a pixel.
+    let away = aside * 24.0 / pixels;
+    let text = format!(
+        "[camera]\nposition = [{:e}, 0.0, {:e}]\nfocus = [0.0, {away:e}, {:e}]\nfov = {:e}\n\
+         [disk]\ninner = 3.0\nouter = 12.0\n[image]\nwidth = 160\nheight = 90\nantialias = true\n",
+        radius * sine,
+        radius * cosine,
+        0.4 * away,
+        2.0 * half.to_degrees(),
+    );
+    Scene::from_toml(&text)
+        .unwrap()
+        .with_light(Some(LIT))
+        .unwrap()
+}
+
+#[test]
+fn disks_of_a_few_pixels_have_the_light_of_samples() {
+    for (radius, inclination, pixels, aside) in [
+        (1000.0, 80.0, 4.0, 0.0),
+        (1000.0, 80.0, 4.0, 0.3),
+        (1000.0, 80.0, 1.5, 0.45),
+        (1000.0, 80.0, 0.7, 0.0),
+        (1000.0, 80.0, 0.3, 0.4),
+        (1000.0, 20.0, 6.0, 0.2),
+        (1e6, 60.0, 5.0, 0.1),
+        (1000.0, 89.5, 8.0, 0.3),
+        (1000.0, 5.0, 2.0, 0.0),
+        (100.0, 80.0, 12.0, 0.5),
+        (30.0, 80.0, 5.0, 0.5),
+    ] {
+        let scene = distant(radius, inclination, pixels, aside);
+        let name = format!("{radius}, {inclination}°, {pixels} pixels, {aside}");
+        against_samples(&name, &scene, (32, 1), (1.0, 1.0, 1.0));
+    }
+}
+
+#[test]
+fn thin_rings_have_the_light_of_samples() {
+    for (name, number) in [
+        ("rings", 1),
+        ("lit", 1),
+        ("luminet", 1),
+        ("plunge", 240),
+        ("plunge", 150),
+        ("lit-orbit", 60),
+    ] {
+        let animation = Animation::load(name).unwrap().with_size(160, 90).unwrap();
+        let scene = animation.frame(number).unwrap();
+        against_samples(name, &scene, (32, 17), (1.0, 1.0, 1.0));
+    }
+}
