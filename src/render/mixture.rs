@@ -5,8 +5,10 @@
 //! line through the pixel's centre, at a right angle to the nearest edge, with the length of the square's section there
 //! as weight: a trapezium. Edges are where `f = h − h_edge(x)` is 0, with `h = κ − κ_c`; to first order an edge is at
 //! the distance `−f/|∇f|` from the centre. How much of the square is covered is known exactly from the cells. Where
-//! the line tells something else, the edges are too bent for it, and the mean is that of places all over the square.
+//! the line tells something else, the edges are too bent for it. Then, and where the whole disk is small, the square is
+//! taken apart into smaller ones, each with a line of its own.
 
+use super::section::Section;
 use super::shader::{PlaceRay, Shader};
 
 /// The most boundaries at one azimuth: two for each order.
@@ -15,7 +17,7 @@ const MOST: usize = 28;
 /// The line may be this far from the true share.
 const WRONG: f64 = 0.1;
 
-/// Places along each side of a pixel where the line is not enough.
+/// Parts of a side of a pixel where the line is not enough.
 const SIDE: usize = 6;
 
 /// A boundary near a pixel.
@@ -25,6 +27,8 @@ struct Near {
     h: f64,
     /// How far it is from the pixel's centre, towards the hole's direction, in pixels.
     distance: f64,
+    /// `|∇(h − h_edge)|`, by which the distance was measured.
+    per_pixel: f64,
     /// The unit vector towards the hole's direction, at a right angle to it.
     normal: (f64, f64),
     below: Option<u32>,
@@ -35,6 +39,8 @@ struct Near {
 pub(super) struct Mixture<'a> {
     shader: &'a Shader<'a>,
     place: (f64, f64),
+    /// The side of the square, in pixels.
+    side: f64,
     pub(super) ray: PlaceRay,
     near: [Near; MOST],
     count: usize,
@@ -53,51 +59,14 @@ const FIVE: [(f64, f64); 5] = [
     (0.906_179_845_938_664, 0.236_926_885_056_189_1),
 ];
 
-/// The section of a pixel's square across a direction.
-#[derive(Clone, Copy)]
-struct Section {
-    /// From the centre to the farthest corner, and to the nearer corner.
-    far: f64,
-    near: f64,
-}
-
-impl Section {
-    fn new((x, y): (f64, f64)) -> Self {
-        let (x, y) = (x.abs(), y.abs());
-        Self {
-            far: 0.5 * (x + y),
-            near: 0.5 * (x - y).abs(),
-        }
-    }
-
-    /// The relative length at a distance from the centre.
-    fn length(self, distance: f64) -> f64 {
-        let beyond = distance.abs() - self.near;
-        if beyond <= 0.0 {
-            1.0
-        } else {
-            (1.0 - beyond / (self.far - self.near)).max(0.0)
-        }
-    }
-
-    /// The share of the square below a distance.
-    fn share_below(self, distance: f64) -> f64 {
-        let t = distance.clamp(-self.far, self.far);
-        let beyond = (t.abs() - self.near).max(0.0);
-        let slope = self.far - self.near;
-        let missing = if slope > 0.0 {
-            0.5 * beyond * beyond / slope
-        } else {
-            0.0
-        };
-        let half = (t.abs() - missing) / (self.far + self.near);
-        0.5 + half.copysign(t)
-    }
-}
-
 impl<'a> Mixture<'a> {
     /// Prepares the pixel with its centre at a place.
     pub(super) fn new(shader: &'a Shader<'a>, place: (f64, f64)) -> Self {
+        Self::of_square(shader, place, 1.0)
+    }
+
+    /// Prepares a square with its centre at a place.
+    fn of_square(shader: &'a Shader<'a>, place: (f64, f64), square: f64) -> Self {
         let ray = shader.ray(place);
         let view = shader.view;
         let side = view.pixel_side();
@@ -124,6 +93,7 @@ impl<'a> Mixture<'a> {
         let mut mixture = Self {
             shader,
             place,
+            side: square,
             ray,
             near: [Near::default(); MOST],
             count: 0,
@@ -150,6 +120,7 @@ impl<'a> Mixture<'a> {
                 mixture.near[mixture.count] = Near {
                     h,
                     distance,
+                    per_pixel: size,
                     normal: (across / size, down / size),
                     below: boundary.below,
                     above: boundary.above,
@@ -177,75 +148,86 @@ impl<'a> Mixture<'a> {
         share: f64,
         colour: impl Fn(f64) -> [f32; 3],
     ) -> [f32; 3] {
-        let Some(nearest) = self.nearest() else {
-            return self.spread(order, colour);
-        };
-        let section = Section::new(nearest.normal);
-        let lambda = self.shader.lambda(&self.ray);
-        let u_at = self.shader.u_along(order, &self.ray);
+        let mut parts = self.shader.fineness;
+        if parts == 1 {
+            let (sum, covered) = self.along_line(order, &colour);
+            if (covered - share).abs() <= WRONG && covered > 0.0 {
+                return sum.map(|c| c / covered as f32);
+            }
+            parts = SIDE;
+        }
+        let mut total = [0.0; 3];
+        let mut all_covered = 0.0;
+        for i in 0..parts * parts {
+            let offset = |i: usize| (i as f64 + 0.5) / parts as f64 - 0.5;
+            let place = (
+                self.place.0 + offset(i % parts),
+                self.place.1 + offset(i / parts),
+            );
+            let part = Mixture::of_square(self.shader, place, 1.0 / parts as f64);
+            let (sum, covered) = part.along_line(order, &colour);
+            for (total, c) in total.iter_mut().zip(sum) {
+                *total += c;
+            }
+            all_covered += covered;
+        }
+        if all_covered > 0.0 {
+            return total.map(|c| c / all_covered as f32);
+        }
+        let u = self.shader.u_on_disk(order, &self.ray);
+        colour(self.shader.amplitude(u, self.shader.lambda(&self.ray)))
+    }
+
+    /// Returns the share of the square that an order covers, and the colours' mean over it times that share, along the
+    /// line through the centre.
+    fn along_line(&self, order: u32, colour: &impl Fn(f64) -> [f32; 3]) -> ([f32; 3], f64) {
         let mut sum = [0.0; 3];
-        let (mut weights, mut covered) = (0.0, 0.0);
+        let mut all_covered = 0.0;
+        let Some(nearest) = self.nearest().filter(|_| self.ray.s > 0.0) else {
+            return (sum, 0.0);
+        };
+        let section = Section::new(nearest.normal, self.side);
+        let u_at = self.shader.u_along(order, &self.ray);
         for pair in self.near().windows(2) {
             let (low, high) = (&pair[0], &pair[1]);
-            if low.above != Some(order) {
-                continue;
-            }
             let (from, to) = (
                 low.distance.max(-section.far),
                 high.distance.min(section.far),
             );
-            if from >= to {
+            if low.above != Some(order) || from >= to {
                 continue;
             }
-            covered += section.share_below(to) - section.share_below(from);
-            let per_pixel = (high.h - low.h) / (high.distance - low.distance);
+            let covered = section.share_below(to) - section.share_below(from);
             let is_thin = to - from > 0.25 * (high.distance - low.distance);
             let nodes = if is_thin { &FIVE[..] } else { &TWO[..] };
             let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+            let (mut stretch, mut weights) = ([0.0; 3], 0.0);
             for (node, weight) in nodes {
                 let t = middle + half * node;
-                let weight = (weight * half * section.length(t)) as f32;
-                let h = low.h + (t - low.distance) * per_pixel;
+                let weight = (weight * section.length(t)) as f32;
+                // Each edge's distance has a scale of its own. At t = 0 this is the ray's h.
+                let above = (t - low.distance) * low.per_pixel;
+                let below = (high.distance - t) * high.per_pixel;
+                let h = low.h + (high.h - low.h) * above / (above + below);
+                let place = (
+                    self.place.0 + t * nearest.normal.0,
+                    self.place.1 + t * nearest.normal.1,
+                );
+                let lambda = self.shader.lambda(&self.shader.ray(place));
                 let rgb = colour(self.shader.amplitude(u_at(h), lambda));
-                for (sum, c) in sum.iter_mut().zip(rgb) {
+                for (sum, c) in stretch.iter_mut().zip(rgb) {
                     *sum += weight * c;
                 }
                 weights += weight;
             }
-        }
-        if (covered - share).abs() > WRONG || weights <= 0.0 {
-            return self.spread(order, colour);
-        }
-        sum.map(|c| c / weights)
-    }
-
-    /// Returns the mean over places all over the square that see the order, or what its nearest edge shows.
-    #[cold]
-    fn spread(&self, order: u32, colour: impl Fn(f64) -> [f32; 3]) -> [f32; 3] {
-        let shader = self.shader;
-        let mut sum = [0.0; 3];
-        let mut count = 0.0;
-        for i in 0..SIDE * SIDE {
-            let offset = |i: usize| (i as f64 + 0.5) / SIDE as f64 - 0.5;
-            let place = (
-                self.place.0 + offset(i % SIDE),
-                self.place.1 + offset(i / SIDE),
-            );
-            let ray = shader.ray(place);
-            if ray.s > 0.0 && shader.front(&ray) == Some(order) {
-                let u = shader.u_on_disk(order, &ray);
-                let rgb = colour(shader.amplitude(u, shader.lambda(&ray)));
-                for (sum, c) in sum.iter_mut().zip(rgb) {
-                    *sum += c;
+            if weights > 0.0 {
+                for (sum, c) in sum.iter_mut().zip(stretch) {
+                    *sum += c * (covered as f32 / weights);
                 }
-                count += 1.0;
+                all_covered += covered;
             }
         }
-        if count > 0.0 {
-            return sum.map(|c| c / count);
-        }
-        let u = shader.u_on_disk(order, &self.ray);
-        colour(shader.amplitude(u, shader.lambda(&self.ray)))
+        (sum, all_covered)
     }
 
     /// Returns the order and the ray of the centre, or of the covered place that is nearest to it.
@@ -266,18 +248,8 @@ impl<'a> Mixture<'a> {
         Some((order, self.shader.ray(place)))
     }
 
-    /// Returns the share of the square that the hole's shadow covers.
+    /// Returns the share of the pixel that the hole's shadow covers.
     pub(super) fn shadow(&self) -> f64 {
-        // The shadow's edge is h = 0. Near it h changes as κ does.
-        let Some(nearest) = self.nearest() else {
-            return f64::from(u8::from(self.ray.h > 0.0));
-        };
-        let per_pixel = (nearest.h - self.ray.h) / nearest.distance;
-        let distance = -self.ray.h / per_pixel.abs();
-        if distance.is_finite() {
-            1.0 - Section::new(nearest.normal).share_below(distance)
-        } else {
-            f64::from(u8::from(self.ray.h > 0.0))
-        }
+        self.shader.shadow(self.place)
     }
 }

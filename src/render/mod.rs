@@ -47,6 +47,7 @@ mod planes;
 mod projection;
 mod renderer;
 mod scene_frame;
+mod section;
 mod shaded;
 mod shader;
 

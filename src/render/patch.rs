@@ -147,6 +147,18 @@ pub(super) struct RowPolynomial {
 }
 
 impl Patch {
+    /// Returns a bound of how much a quantity changes from a pixel to the next.
+    pub(super) fn steepness(&self, quantity: usize) -> f64 {
+        let count = self.count;
+        let (mut across, mut down) = (0.0, 0.0);
+        let coefficients = &self.coefficients[quantity * count * count..][..count * count];
+        for (i, c) in coefficients.iter().enumerate() {
+            across += (i % count) as f64 * c.abs();
+            down += (i / count) as f64 * c.abs();
+        }
+        (across * self.per_pixel.0).max(down * self.per_pixel.1)
+    }
+
     /// Returns a quantity along the row of pixels' centres at `y`.
     #[inline]
     pub(super) fn row(&self, quantity: usize, y: f64) -> RowPolynomial {
@@ -171,25 +183,31 @@ impl Patch {
 const LANES: usize = 16;
 
 impl RowPolynomial {
-    /// Calls `each` with the quantity at the centres of the pixels of a row, from the left.
+    /// The quantity at x.
+    #[inline]
+    pub(super) fn at(&self, x: f64) -> f64 {
+        let t = (x - self.centre) * self.per_pixel;
+        let powers = self.powers[..self.count].iter().rev();
+        powers.fold(0.0, |sum, c| sum * t + c)
+    }
+
+    /// Calls `each` with the quantity at the centres of some pixels of a row at a time, with the first one's column.
     #[inline(always)]
-    pub(super) fn for_each(&self, from: usize, to: usize, mut each: impl FnMut(usize, f64)) {
+    pub(super) fn for_each(&self, from: usize, to: usize, mut each: impl FnMut(usize, &[f64])) {
         let powers = &self.powers[..self.count];
         let mut column = from;
         while column < to {
+            let start = (column as f64 + 0.5 - self.centre) * self.per_pixel;
             let mut sums = [0.0; LANES];
-            let t: [f64; LANES] = core::array::from_fn(|i| {
-                ((column + i) as f64 + 0.5 - self.centre) * self.per_pixel
-            });
+            let t: [f64; LANES] = core::array::from_fn(|i| start + i as f64 * self.per_pixel);
             for c in powers.iter().rev() {
                 for (sum, t) in sums.iter_mut().zip(&t) {
                     *sum = *sum * t + c;
                 }
             }
-            for (i, sum) in sums.iter().enumerate().take(to - column) {
-                each(column + i, *sum);
-            }
-            column += LANES;
+            let count = LANES.min(to - column);
+            each(column, &sums[..count]);
+            column += count;
         }
     }
 

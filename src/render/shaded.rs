@@ -16,7 +16,7 @@ use super::shader::Shader;
 use crate::isoradial::Boundary;
 
 /// Columns and rows of a tile: what a patch covers at most. Bands are whole rows of tiles.
-const TILE: (usize, usize) = (64, 32);
+const TILE: (usize, usize) = (128, 32);
 
 /// Memory for the cells of a band, in bytes: what the nearer caches hold.
 const BAND: usize = 1 << 20;
@@ -83,6 +83,7 @@ struct Painter<'a, I> {
     shader: &'a Shader<'a>,
     ink: &'a I,
     fit: &'a PatchFit,
+    smooth: bool,
 }
 
 /// The rows of a band, whole tiles.
@@ -157,7 +158,12 @@ impl<'a> ShadedFrame<'a> {
                     .1
             }
         };
-        let painter = Painter { shader, ink, fit };
+        let painter = Painter {
+            shader,
+            ink,
+            fit,
+            smooth,
+        };
         let drawn: Vec<_> = outlines
             .iter()
             .map(|(order, outline)| {
@@ -237,6 +243,7 @@ impl<'a> ShadedFrame<'a> {
                         );
                     }
                 }
+                ink.finish(&mut memory, shader, top, smooth);
             },
         );
     }
@@ -443,6 +450,14 @@ impl<I: Ink> Painter<'_, I> {
         let mut values = [0.0; 8];
         for (row, from, to) in clipped {
             for column in from..to {
+                if self.smooth && self.ink.averages() {
+                    let place = (column as f64 + 0.5, (top + row) as f64 + 0.5);
+                    let mixture = Mixture::new(shader, place);
+                    let whole = Part { order, share: 1.0 };
+                    self.ink
+                        .put_mixture(memory, shader, row, column, &[whole], &mixture);
+                    continue;
+                }
                 let ray = shader.ray((column as f64 + 0.5, (top + row) as f64 + 0.5));
                 let u = shader.u_on_disk(order, &ray);
                 self.ink.evaluate(shader, order, u, &ray, &mut values);

@@ -1,16 +1,17 @@
 //! What the ray of any place in the picture shows, from the map of the camera's radius.
 
 use super::centre::front;
+use super::section::Section;
 use crate::isoradial::{Isoradials, PlaneMeeting, RadiusMap};
 use crate::light::{SightGeometry, flux, redshift};
-use crate::scene::{PixelRay, View};
+use crate::scene::{Affine, PixelRay, View};
+use crate::table::spline::{self, NodeAxis, Scale};
 
 /// Finds the inverse radius at which a ray with `κ − κ_c = h` meets the disk's plane in an order, where the map has a
 /// gap.
 pub(super) type Gaps<'a> = &'a (dyn Fn(u32, f64, PlaneMeeting) -> Option<f64> + Sync);
 
 /// Shades places of one view.
-#[derive(Clone, Copy)]
 pub(super) struct Shader<'a> {
     pub(super) view: &'a View,
     pub(super) curves: &'a Isoradials,
@@ -22,7 +23,22 @@ pub(super) struct Shader<'a> {
     pub(super) u_edges: (f64, f64),
     /// What the curves call the first order that is seen: 1 where the camera is in the disk's plane.
     first_order: u32,
+    /// `√(F/F_max)/u^{3/2}` as a spline of √u, in which it is analytic.
+    flux: Vec<f64>,
+    flux_axis: Scale,
+    /// Partly covered pixels are taken apart into so many parts a side.
+    pub(super) fineness: usize,
 }
+
+/// Pixels in a Schwarzschild radius at the hole's distance, below which partly covered pixels are taken apart: there
+/// the light changes much within a pixel.
+const FINE: f64 = 24.0;
+
+/// The most parts a side.
+const FINEST: f64 = 48.0;
+
+/// Nodes of the spline of the flux: right to some 1e-9.
+const FLUX_NODES: u32 = 160;
 
 /// A ray of the picture.
 #[derive(Debug, Clone, Copy)]
@@ -42,7 +58,25 @@ impl<'a> Shader<'a> {
         map: &'a RadiusMap,
         gaps: Gaps<'a>,
     ) -> Self {
+        let (outer, inner) = curves.u_edges();
+        // The map goes beyond the edges.
+        let axis = NodeAxis {
+            start: (0.4 * outer).sqrt(),
+            end: (1.3 * inner).min(0.6).sqrt(),
+            nodes: FLUX_NODES,
+        };
+        let flux: Vec<f64> = (0..FLUX_NODES)
+            .map(|i| {
+                let v = axis.node(i);
+                flux::signed_root(v * v) / (v * v * v)
+            })
+            .collect();
         Self {
+            flux: spline::coefficients(&flux),
+            flux_axis: Scale::new(axis),
+            fineness: (FINE * view.pixel_side() * view.radius())
+                .ceil()
+                .clamp(1.0, FINEST) as usize,
             view,
             curves,
             map,
@@ -123,7 +157,14 @@ impl<'a> Shader<'a> {
     #[inline(always)]
     pub(super) fn amplitude(&self, u: f64, lambda: f64) -> f64 {
         let g = self.redshift(u, lambda);
-        g * g * flux::signed_root(u)
+        g * g * self.flux_root(u)
+    }
+
+    /// Returns [`flux::signed_root`] from its spline.
+    #[inline(always)]
+    pub(super) fn flux_root(&self, u: f64) -> f64 {
+        let v = u.sqrt();
+        u * v * spline::value(&self.flux, &self.flux_axis.stencil(v))
     }
 
     /// Returns the order in front along a ray.
@@ -141,6 +182,26 @@ impl<'a> Shader<'a> {
     /// Returns the order in front at a place.
     pub(super) fn front_at(&self, place: (f64, f64)) -> Option<u32> {
         front(self.view, self.curves, place)
+    }
+
+    /// Returns the share of a pixel's square that the hole's shadow covers, the pixel's centre at a place.
+    pub(super) fn shadow(&self, place: (f64, f64)) -> f64 {
+        // The shadow is where f = z − κ_c s is positive.
+        let ray = self.ray(place);
+        let f = ray.ray.z - self.curves.critical() * ray.s;
+        let view = self.view;
+        let change = |part: fn(Affine) -> f64| {
+            let s = (ray.ray.ta * part(view.ta()) + ray.ray.tb * part(view.tb())) / ray.s;
+            (part(view.z()) - self.curves.critical() * s) * view.pixel_side()
+        };
+        let (x, y) = (change(|a| a.per_x), change(|a| -a.per_y));
+        let slope = (x * x + y * y).sqrt();
+        let distance = -f / slope;
+        if distance.abs() < 1.0 {
+            1.0 - Section::new((x / slope, y / slope), 1.0).share_below(distance)
+        } else {
+            f64::from(u8::from(f > 0.0))
+        }
     }
 
     /// Returns the order that is told of what the curves call `order`.
