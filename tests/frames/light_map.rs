@@ -50,7 +50,7 @@ fn maps_are_as_accurate_as_they_say() {
     let claimed = Cell::new(0.0_f64);
     let worst = Cell::new((0.0_f64, 0.0_f64));
     let config = ProptestConfig {
-        cases: 300,
+        cases: std::env::var("CASES").map_or(60, |c| c.parse().unwrap()),
         failure_persistence: None,
         ..ProptestConfig::default()
     };

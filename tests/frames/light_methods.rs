@@ -128,6 +128,10 @@ fn built_in_scenes_are_the_same_by_every_method() {
 
 #[test]
 fn random_scenes_are_the_same_by_every_method() {
-    let scenes = random_lit_scenes(40, (32, 24)).into_iter();
+    let scenes = random_lit_scenes(
+        std::env::var("CASES").map_or(40, |c| c.parse().unwrap()),
+        (48, 36),
+    )
+    .into_iter();
     compare(scenes.map(|(kind, scene)| (format!("{kind:?}"), scene)));
 }
