@@ -264,6 +264,12 @@ impl RadiusColumn<'_> {
         powers.iter().rev().fold(0.0, |u, power| u * share + power)
     }
 
+    /// Returns the nearest τ that the map has. The edges of the map are only near the disk's.
+    #[inline]
+    pub(crate) fn clamped(&self, tau: f64) -> f64 {
+        tau.clamp(self.section.tau.from, self.section.tau.to)
+    }
+
     /// Returns whether the map goes as far as this.
     #[inline]
     pub(crate) fn holds(&self, tau: f64) -> bool {

@@ -80,8 +80,8 @@ pub(super) trait Ink: Sync {
         band: &mut Self::Band<'_>,
         shader: &Shader<'_>,
         order: u32,
-        row: usize,
-        column: usize,
+        pixel: (usize, usize),
+        ray: &PlaceRay,
         values: &[f64],
     );
 
@@ -133,25 +133,24 @@ impl Colours {
         parts: usize,
         mut put: impl FnMut(usize, [f32; 3]),
     ) {
-        let offset = |i: usize| (i as f64 + 0.5) / parts as f64 - 0.5;
         if parts == 1 {
             patch
                 .row(quantity, y)
-                .for_each(from, to, |column, amplitudes| {
+                .for_lanes(from, to, |column, amplitudes| {
                     for (i, amplitude) in amplitudes.iter().enumerate() {
-                        put(column + i, self.radiance.rgb(*amplitude as f32));
+                        put(column + i, self.radiance.rgb(*amplitude));
                     }
                 });
             return;
         }
         let rows: [RowPolynomial; MOST_PARTS] =
-            core::array::from_fn(|i| patch.row(quantity, y + offset(i.min(parts - 1))));
+            core::array::from_fn(|i| patch.row(quantity, y + offset(i.min(parts - 1), parts)));
         let share = 1.0 / (parts * parts) as f32;
         for column in from..to {
             let mut sum = [0.0; 3];
             for row in &rows[..parts] {
                 for i in 0..parts {
-                    let amplitude = row.at(column as f64 + 0.5 + offset(i));
+                    let amplitude = row.at(column as f64 + 0.5 + offset(i, parts));
                     let rgb = self.radiance.rgb(amplitude as f32);
                     for (sum, c) in sum.iter_mut().zip(rgb) {
                         *sum += share * c;
@@ -202,14 +201,30 @@ const COLOUR_TOLERANCE: f64 = 2e-5;
 /// The most places a side of a pixel over which its light is averaged.
 const MOST_PARTS: usize = 8;
 
-/// So many places a side are taken, times the change of the amplitude over a pixel. The mean over n places is off by
-/// about `L″ δ²/24n²` where the amplitude changes by δ, with L″ some 10: by 7e-4 of the hottest ring's light.
-const PARTS: f64 = 24.0;
+/// Where the amplitude changes by less than this from a pixel to the next, the light of the centre is the mean: it is
+/// off by about `L″ δ²/24` where the amplitude changes by δ, with L″ some 10, so by 1e-3 of the hottest ring's light.
+const FLAT: f64 = 0.05;
+
+/// Two places a side, at ±1/√12, are exact to the fourth power of the change. They do up to this change.
+const STEEP: f64 = 0.3;
 
 /// How many places a side of a pixel its light is averaged over.
-fn parts(patch: &Patch, quantity: usize) -> usize {
-    let parts = (PARTS * patch.steepness(quantity)).ceil();
-    parts.clamp(1.0, MOST_PARTS as f64) as usize
+fn parts(patch: &Patch) -> usize {
+    match patch.steepness() {
+        flat if flat <= FLAT => 1,
+        steep if steep <= STEEP => 2,
+        steep if steep <= 2.0 * STEEP => 4,
+        _ => MOST_PARTS,
+    }
+}
+
+/// Where the i-th of `parts` places of a pixel's side is, from its middle: pairs of Gauss's places.
+fn offset(i: usize, parts: usize) -> f64 {
+    /// `1/√12`
+    const GAUSS: f64 = 0.288_675_134_594_812_9;
+    let pairs = parts / 2;
+    let pair = ((i / 2) as f64 + 0.5) / pairs as f64 - 0.5;
+    pair + (if i.is_multiple_of(2) { -GAUSS } else { GAUSS }) / pairs as f64
 }
 
 /// How far data may be off.
@@ -285,7 +300,7 @@ impl Ink for Rgb8<'_> {
         patch: &Patch,
         y: f64,
     ) {
-        let parts = parts(patch, 0);
+        let parts = parts(patch);
         if parts > 1 {
             let pixels = band.pixels(row, from, to);
             self.0
@@ -309,8 +324,8 @@ impl Ink for Rgb8<'_> {
         band: &mut Self::Band<'_>,
         _: &Shader<'_>,
         _: u32,
-        row: usize,
-        column: usize,
+        (row, column): (usize, usize),
+        _: &PlaceRay,
         values: &[f64],
     ) {
         let [r, g, b, _] = self.0.palette.rgb8(values[0] as f32);
@@ -364,7 +379,7 @@ impl Ink for Rgb16<'_> {
         y: f64,
     ) {
         let pixels = band.pixels(row, from, to);
-        let parts = parts(patch, 0);
+        let parts = parts(patch);
         self.0
             .averaged(patch, 0, (from, to), y, parts, |column, light| {
                 pixels[column - from] = self.0.display.rgb16(light);
@@ -376,8 +391,8 @@ impl Ink for Rgb16<'_> {
         band: &mut Self::Band<'_>,
         _: &Shader<'_>,
         _: u32,
-        row: usize,
-        column: usize,
+        (row, column): (usize, usize),
+        _: &PlaceRay,
         values: &[f64],
     ) {
         let light = self.0.radiance.rgb(values[0] as f32);
@@ -537,8 +552,8 @@ impl<'a> Data<'a> {
             match (*layer, value) {
                 (Layer::Coverage | Layer::Alpha, _) => plane[pixel] = 1.0,
                 (Layer::Order, _) => plane[pixel] = order as f32,
-                (Layer::Azimuth, Some(azimuth)) => plane[pixel] = turned(azimuth),
-                (Layer::Temperature, Some(y)) => plane[pixel] = self.kelvin(y),
+                (Layer::Azimuth, Some(azimuth)) => plane[pixel] = turned(azimuth as f32),
+                (Layer::Temperature, Some(y)) => plane[pixel] = self.kelvin(y as f32),
                 (Layer::Colour, Some(y)) => {
                     let rgb = self
                         .colours
@@ -551,8 +566,8 @@ impl<'a> Data<'a> {
         }
     }
 
-    fn kelvin(&self, amplitude: f64) -> f32 {
-        (self.temperature * amplitude.max(0.0).sqrt()) as f32
+    fn kelvin(&self, amplitude: f32) -> f32 {
+        self.temperature as f32 * amplitude.max(0.0).sqrt()
     }
 }
 
@@ -573,15 +588,15 @@ fn add_shadow(alpha: &mut [f32], width: usize, shader: &Shader<'_>, top: usize, 
 }
 
 /// An angle as a float within 0 and 2π.
-fn turned(angle: f64) -> f32 {
-    let angle = if angle < 0.0 {
-        angle + TAU
-    } else if angle >= TAU {
-        angle - TAU
+fn turned(angle: f32) -> f32 {
+    const TURN: f32 = core::f32::consts::TAU;
+    if angle < 0.0 {
+        angle + TURN
+    } else if angle >= TURN {
+        angle - TURN
     } else {
         angle
-    };
-    angle as f32
+    }
 }
 
 impl Ink for Data<'_> {
@@ -626,7 +641,7 @@ impl Ink for Data<'_> {
         for (value, quantity) in values.iter_mut().zip(&self.quantities) {
             *value = match quantity {
                 Quantity::Radius => 1.0 / u,
-                Quantity::Azimuth => shader.geometry.azimuth(ray.ray, shader.told(order)),
+                Quantity::Azimuth => shader.geometry.azimuth(ray.ray, shader.told(order, ray)),
                 Quantity::Redshift => g,
                 Quantity::EmissionCosine => {
                     crate::light::emission_cosine(u, momentum.across, momentum.along)
@@ -675,7 +690,13 @@ impl Ink for Data<'_> {
             let place = Self::of(*layer).and_then(|quantity| self.place_of(quantity));
             let Some(place) = place else {
                 match layer {
-                    Layer::Order => pixels.fill(shader.told(order) as f32),
+                    Layer::Order if shader.is_in_plane => {
+                        for (i, pixel) in pixels.iter_mut().enumerate() {
+                            let ray = shader.ray(((from + i) as f64 + 0.5, y));
+                            *pixel = shader.told(order, &ray) as f32;
+                        }
+                    }
+                    Layer::Order => pixels.fill(order as f32),
                     _ => pixels.fill(1.0),
                 }
                 continue;
@@ -683,22 +704,23 @@ impl Ink for Data<'_> {
             let polynomial = patch.row(place, y);
             if *layer == Layer::Colour {
                 if let Some(colours) = self.colours {
-                    let parts = parts(patch, place);
+                    let parts = parts(patch);
                     colours.averaged(patch, place, (from, to), y, parts, |column, light| {
                         pixels[3 * (column - from)..][..3].copy_from_slice(&light);
                     });
                 }
                 continue;
             }
-            polynomial.for_each(from, to, |column, values| {
+            let (least, greatest) = (least as f32, greatest as f32);
+            polynomial.for_lanes(from, to, |column, values| {
                 let pixels = pixels[column - from..].iter_mut().zip(values);
                 match layer {
                     Layer::Radius => {
-                        pixels.for_each(|(pixel, r)| *pixel = r.clamp(least, greatest) as f32);
+                        pixels.for_each(|(pixel, r)| *pixel = r.clamp(least, greatest));
                     }
                     Layer::Azimuth => pixels.for_each(|(pixel, angle)| *pixel = turned(*angle)),
                     Layer::Temperature => pixels.for_each(|(pixel, y)| *pixel = self.kelvin(*y)),
-                    _ => pixels.for_each(|(pixel, value)| *pixel = *value as f32),
+                    _ => pixels.for_each(|(pixel, value)| *pixel = *value),
                 }
             });
         }
@@ -709,12 +731,13 @@ impl Ink for Data<'_> {
         band: &mut Self::Band<'_>,
         shader: &Shader<'_>,
         order: u32,
-        row: usize,
-        column: usize,
+        (row, column): (usize, usize),
+        ray: &PlaceRay,
         values: &[f64],
     ) {
         let pixel = row * band.width + column;
-        self.set(band, shader.told(order), pixel, values);
+        let told = shader.told(order, ray);
+        self.set(band, told, pixel, values);
     }
 
     fn put_mixture(
@@ -733,7 +756,7 @@ impl Ink for Data<'_> {
                 let u = shader.u_on_disk(order, &ray);
                 self.evaluate(shader, order, u, &ray, &mut values);
             }
-            self.set(band, shader.told(order), pixel, &values);
+            self.set(band, shader.told(order, &ray), pixel, &values);
         }
         let share = parts.iter().map(|part| part.share).sum::<f32>().min(1.0);
         let light = match self.colours {

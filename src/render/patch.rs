@@ -28,6 +28,9 @@ pub(super) struct Patch {
     coefficients: Vec<f64>,
     values: Vec<f64>,
     along_x: Vec<f64>,
+    /// How far each node is from the one before, of the half width.
+    nodes_apart: Vec<f64>,
+    steepness: f64,
 }
 
 /// The most powers of a patch in x.
@@ -92,6 +95,12 @@ impl PatchFit {
                 }
             }
         }
+        patch.nodes_apart.clear();
+        let apart = self.nodes.windows(2).map(|nodes| nodes[0] - nodes[1]);
+        patch
+            .nodes_apart
+            .extend(core::iter::once(f64::INFINITY).chain(apart));
+        patch.steepness = patch.measured_steepness();
         patch.coefficients.clear();
         patch.along_x.resize(count * count, 0.0);
         for values in patch.values.chunks_exact(count * count) {
@@ -147,16 +156,32 @@ pub(super) struct RowPolynomial {
 }
 
 impl Patch {
-    /// Returns a bound of how much a quantity changes from a pixel to the next.
-    pub(super) fn steepness(&self, quantity: usize) -> f64 {
+    /// Returns about how much the last quantity changes from a pixel to the next, at most.
+    pub(super) fn steepness(&self) -> f64 {
+        self.steepness
+    }
+
+    fn measured_steepness(&self) -> f64 {
         let count = self.count;
-        let (mut across, mut down) = (0.0, 0.0);
-        let coefficients = &self.coefficients[quantity * count * count..][..count * count];
-        for (i, c) in coefficients.iter().enumerate() {
-            across += (i % count) as f64 * c.abs();
-            down += (i / count) as f64 * c.abs();
-        }
-        (across * self.per_pixel.0).max(down * self.per_pixel.1)
+        let values = &self.values[self.values.len() - count * count..];
+        let most = |pairs: &mut dyn Iterator<Item = (usize, usize, usize)>, per_pixel: f64| {
+            pairs.fold(0.0, |most: f64, (a, b, i)| {
+                let apart = self.nodes_apart[i] / per_pixel;
+                most.max((values[a] - values[b]).abs() / apart)
+            })
+        };
+        let rows = (0..count).flat_map(|j| (1..count).map(move |i| (j, i)));
+        let across = most(
+            &mut rows
+                .clone()
+                .map(|(j, i)| (j * count + i, j * count + i - 1, i)),
+            self.per_pixel.0,
+        );
+        let down = most(
+            &mut rows.map(|(j, i)| (i * count + j, (i - 1) * count + j, i)),
+            self.per_pixel.1,
+        );
+        across.max(down)
     }
 
     /// Returns a quantity along the row of pixels' centres at `y`.
@@ -192,33 +217,14 @@ impl RowPolynomial {
     }
 
     /// Calls `each` with the quantity at the centres of some pixels of a row at a time, with the first one's column.
-    #[inline(always)]
-    pub(super) fn for_each(&self, from: usize, to: usize, mut each: impl FnMut(usize, &[f64])) {
-        let powers = &self.powers[..self.count];
-        let mut column = from;
-        while column < to {
-            let start = (column as f64 + 0.5 - self.centre) * self.per_pixel;
-            let mut sums = [0.0; LANES];
-            let t: [f64; LANES] = core::array::from_fn(|i| start + i as f64 * self.per_pixel);
-            for c in powers.iter().rev() {
-                for (sum, t) in sums.iter_mut().zip(&t) {
-                    *sum = *sum * t + c;
-                }
-            }
-            let count = LANES.min(to - column);
-            each(column, &sums[..count]);
-            column += count;
-        }
-    }
-
-    /// Calls `each` with the quantity in single precision for some pixels of a row at a time, with the first one's
-    /// column.
+    ///
+    /// What is computed in single precision is the difference from the value in the patch's middle. So the sum is as
+    /// good as a float can be, but for half a unit in its last place.
     #[inline(always)]
     pub(super) fn for_lanes(&self, from: usize, to: usize, mut each: impl FnMut(usize, &[f32])) {
-        let mut powers = [0.0_f32; MOST_POWERS];
-        for (single, power) in powers.iter_mut().zip(&self.powers) {
-            *single = *power as f32;
-        }
+        let middle = self.powers[0] as f32;
+        let mut powers = self.powers.map(|power| power as f32);
+        powers[0] = (self.powers[0] - f64::from(middle)) as f32;
         let powers = &powers[..self.count];
         let step = self.per_pixel as f32;
         let mut column = from;
@@ -231,8 +237,9 @@ impl RowPolynomial {
                     *sum = *sum * t + c;
                 }
             }
+            let values = sums.map(|sum| middle + sum);
             let count = LANES.min(to - column);
-            each(column, &sums[..count]);
+            each(column, &values[..count]);
             column += count;
         }
     }

@@ -369,8 +369,9 @@ impl<I: Ink> Painter<'_, I> {
         let shader = self.shader;
         if self.ink.quantities() == 0 {
             for (row, from, to) in clipped {
+                let y = (top + row) as f64 + 0.5;
                 self.ink
-                    .put_row(memory, shader, order, row, (from, to), patch, 0.0);
+                    .put_row(memory, shader, order, row, (from, to), patch, y);
             }
             return;
         }
@@ -461,7 +462,8 @@ impl<I: Ink> Painter<'_, I> {
                 let ray = shader.ray((column as f64 + 0.5, (top + row) as f64 + 0.5));
                 let u = shader.u_on_disk(order, &ray);
                 self.ink.evaluate(shader, order, u, &ray, &mut values);
-                self.ink.put(memory, shader, order, row, column, &values);
+                self.ink
+                    .put(memory, shader, order, (row, column), &ray, &values);
             }
         }
     }

@@ -21,8 +21,8 @@ pub(super) struct Shader<'a> {
     clock_rate: f64,
     /// The inverse radii of the outer and the inner edge.
     pub(super) u_edges: (f64, f64),
-    /// What the curves call the first order that is seen: 1 where the camera is in the disk's plane.
-    first_order: u32,
+    /// Whether the camera is in the disk's plane.
+    pub(super) is_in_plane: bool,
     /// `√(F/F_max)/u^{3/2}` as a spline of √u, in which it is analytic.
     flux: Vec<f64>,
     flux_axis: Scale,
@@ -84,7 +84,7 @@ impl<'a> Shader<'a> {
             geometry: SightGeometry::new(view),
             clock_rate: view.clock_rate(),
             u_edges: curves.u_edges(),
-            first_order: u32::from(view.n_p() == 0.0),
+            is_in_plane: view.n_p() == 0.0,
         }
     }
 
@@ -119,7 +119,7 @@ impl<'a> Shader<'a> {
         let u = match self.map.section(order, ray.meets) {
             Some(section) => {
                 let column = section.column(ray.meets.x);
-                column.u(column.tau(ray.h).clamp(0.0, 1.0))
+                column.u(column.clamped(column.tau(ray.h)))
             }
             None => (self.gaps)(order, ray.h, ray.meets).unwrap_or(outer),
         };
@@ -134,7 +134,7 @@ impl<'a> Shader<'a> {
         let (meets, (outer, inner)) = (ray.meets, self.u_edges);
         move |h| {
             let u = match &column {
-                Some(column) => column.u(column.tau(h).clamp(0.0, 1.0)),
+                Some(column) => column.u(column.clamped(column.tau(h))),
                 None => (self.gaps)(order, h, meets).unwrap_or(outer),
             };
             u.clamp(outer, inner)
@@ -204,8 +204,16 @@ impl<'a> Shader<'a> {
         }
     }
 
-    /// Returns the order that is told of what the curves call `order`.
-    pub(super) fn told(&self, order: u32) -> u32 {
-        order - self.first_order.min(order)
+    /// Returns the order that is told of what the curves call `order`, along a ray.
+    ///
+    /// They differ where the camera is in the disk's plane: rays towards one side of the hole meet it at `kπ`, those
+    /// towards the other at `(k + 1)π`. The first crossing of both is at π.
+    #[inline]
+    pub(super) fn told(&self, order: u32, ray: &PlaceRay) -> u32 {
+        if self.is_in_plane && ray.meets.quarter == 0 {
+            order.saturating_sub(1)
+        } else {
+            order
+        }
     }
 }
