@@ -66,7 +66,7 @@ pub(crate) struct Worst {
     /// Relative.
     pub(crate) redshift: f64,
     pub(crate) cosine: f64,
-    /// Of any of the four, in units of the last place of a float32.
+    /// Of any of the four, in units of the last place of a float32; of an azimuth below 1, in those of 1.
     pub(crate) float32: f64,
 }
 
@@ -83,7 +83,7 @@ impl Worst {
         self.cosine = self.cosine.max(cosine);
         let pairs = [
             (1.0 / found.u, 1.0 / known.u),
-            (known.azimuth + azimuth, known.azimuth),
+            (known.azimuth.max(1.0) + azimuth, known.azimuth.max(1.0)),
             (found.redshift, known.redshift),
             (found.emission_cosine, known.emission_cosine),
         ];
