@@ -83,10 +83,9 @@ pub(crate) struct RadiusSection {
     x: Span,
     tau: Span,
     degrees: (usize, usize),
-    /// Powers of x by rows, the highest first: the outer edge, the inner edge, u's powers of τ, the lowest first, and
-    /// zeros, [`Self::groups`] fours in each.
-    rows: Vec<[f64; 4]>,
-    groups: usize,
+    /// Four polynomials of x after four, each by its powers, the highest first: the outer edge, the inner edge, and the
+    /// factors of u's powers of τ, the lowest first.
+    powers: Vec<[f64; 4]>,
     error: f64,
 }
 
@@ -202,7 +201,7 @@ impl RadiusMap {
     /// Returns the number of bytes that a frame reads of it.
     pub fn bytes(&self) -> usize {
         let sections = self.sections();
-        sections.map(|section| size_of_val(&*section.rows)).sum()
+        sections.map(|section| size_of_val(&*section.powers)).sum()
     }
 
     fn sections(&self) -> impl Iterator<Item = &RadiusSection> {
@@ -226,12 +225,15 @@ impl RadiusSection {
     pub(crate) fn column(&self, x: f64) -> RadiusColumn<'_> {
         let share = self.x.share(x);
         let mut values = [[0.0; 4]; FOURS];
-        for row in self.rows.chunks_exact(self.groups) {
-            for (value, row) in values.iter_mut().zip(row) {
+        let groups = self.powers.chunks_exact(self.degrees.0 + 1);
+        for (value, powers) in values.iter_mut().zip(groups) {
+            let mut sum = [0.0; 4];
+            for power in powers {
                 for i in 0..4 {
-                    value[i] = value[i] * share + row[i];
+                    sum[i] = sum[i] * share + power[i];
                 }
             }
+            *value = sum;
         }
         RadiusColumn {
             section: self,
@@ -431,14 +433,13 @@ impl<A: SweptAngles> PieceRays<'_, A> {
             x: frame.x,
             tau: frame.tau,
             degrees,
-            rows: vec![[0.0; 4]; groups * (degrees.0 + 1)],
-            groups,
+            powers: vec![[0.0; 4]; groups * (degrees.0 + 1)],
             error: 0.0,
         };
         let mut set = |column: usize, coefficients: &[f64]| {
             let powers = along_x.powers(coefficients);
             for (i, power) in powers.iter().rev().enumerate() {
-                section.rows[i * groups + column / 4][column % 4] = *power;
+                section.powers[column / 4 * (degrees.0 + 1) + i][column % 4] = *power;
             }
         };
         for (column, edge) in frame.edges.iter().enumerate() {

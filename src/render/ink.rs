@@ -195,8 +195,9 @@ fn evaluate_amplitude(shader: &Shader<'_>, u: f64, ray: &PlaceRay, values: &mut 
     values[0] = shader.amplitude(u, shader.lambda(ray));
 }
 
-/// How far an amplitude may be off for colours of 8 bits: 1/20 of a code where light rises with the tenth power of it.
-const COLOUR_TOLERANCE: f64 = 2e-5;
+/// The last coefficients of an amplitude for colours of 8 bits. The amplitude itself is off by a fifth of it or less: by
+/// 1/20 of a code where light rises with its tenth power.
+const COLOUR_TOLERANCE: f64 = 1e-4;
 
 /// The most places a side of a pixel over which its light is averaged.
 const MOST_PARTS: usize = 8;
@@ -208,8 +209,20 @@ const FLAT: f64 = 0.05;
 /// Two places a side, at ±1/√12, are exact to the fourth power of the change. They do up to this change.
 const STEEP: f64 = 0.3;
 
+/// What of a pixel's light is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Averaging {
+    /// The mean over its square.
+    Square,
+    /// Its centre's.
+    Centre,
+}
+
 /// How many places a side of a pixel its light is averaged over.
-fn parts(patch: &Patch) -> usize {
+fn parts(patch: &Patch, averaging: Averaging) -> usize {
+    if averaging == Averaging::Centre {
+        return 1;
+    }
     match patch.steepness() {
         flat if flat <= FLAT => 1,
         steep if steep <= STEEP => 2,
@@ -231,7 +244,7 @@ fn offset(i: usize, parts: usize) -> f64 {
 const DATA_TOLERANCE: f64 = 1e-7;
 
 /// Colours of 8 bits.
-pub(super) struct Rgb8<'a>(pub(super) &'a Colours);
+pub(super) struct Rgb8<'a>(pub(super) &'a Colours, pub(super) Averaging);
 
 /// A band's memory: rows of samples, some distance apart.
 pub(super) struct Rows<'b, T> {
@@ -300,7 +313,7 @@ impl Ink for Rgb8<'_> {
         patch: &Patch,
         y: f64,
     ) {
-        let parts = parts(patch);
+        let parts = parts(patch, self.1);
         if parts > 1 {
             let pixels = band.pixels(row, from, to);
             self.0
@@ -347,7 +360,7 @@ impl Ink for Rgb8<'_> {
 }
 
 /// Colours of 16 bits.
-pub(super) struct Rgb16<'a>(pub(super) &'a Colours);
+pub(super) struct Rgb16<'a>(pub(super) &'a Colours, pub(super) Averaging);
 
 impl Ink for Rgb16<'_> {
     type Band<'b> = Rows<'b, u16>;
@@ -361,7 +374,7 @@ impl Ink for Rgb16<'_> {
     }
 
     fn tolerance(&self) -> f64 {
-        COLOUR_TOLERANCE / 256.0
+        COLOUR_TOLERANCE / 200.0
     }
 
     fn evaluate(&self, shader: &Shader<'_>, _: u32, u: f64, ray: &PlaceRay, values: &mut [f64]) {
@@ -379,7 +392,7 @@ impl Ink for Rgb16<'_> {
         y: f64,
     ) {
         let pixels = band.pixels(row, from, to);
-        let parts = parts(patch);
+        let parts = parts(patch, self.1);
         self.0
             .averaged(patch, 0, (from, to), y, parts, |column, light| {
                 pixels[column - from] = self.0.display.rgb16(light);
@@ -420,6 +433,7 @@ pub(super) struct Data<'a> {
     layers: LayerSet,
     /// Of a scene with light.
     colours: Option<&'a Colours>,
+    averaging: Averaging,
     /// The temperature of the hottest ring.
     temperature: f64,
 }
@@ -448,6 +462,7 @@ impl<'a> Data<'a> {
         layers: LayerSet,
         colours: Option<&'a Colours>,
         light: Option<Light>,
+        averaging: Averaging,
     ) -> Result<Self, RenderError> {
         let has_light = match light {
             None => !layers.has(Layer::Temperature) && !layers.has(Layer::Colour),
@@ -476,6 +491,7 @@ impl<'a> Data<'a> {
             quantities: needed.map(|(quantity, _)| quantity).collect(),
             layers,
             colours,
+            averaging,
             temperature,
         })
     }
@@ -704,7 +720,7 @@ impl Ink for Data<'_> {
             let polynomial = patch.row(place, y);
             if *layer == Layer::Colour {
                 if let Some(colours) = self.colours {
-                    let parts = parts(patch);
+                    let parts = parts(patch, self.averaging);
                     colours.averaged(patch, place, (from, to), y, parts, |column, light| {
                         pixels[3 * (column - from)..][..3].copy_from_slice(&light);
                     });

@@ -10,9 +10,7 @@
 
 use super::section::Section;
 use super::shader::{PlaceRay, Shader};
-
-/// The most boundaries at one azimuth: two for each order.
-const MOST: usize = 28;
+use crate::isoradial::Boundary;
 
 /// The line may be this far from the true share.
 const WRONG: f64 = 0.1;
@@ -31,19 +29,19 @@ struct Near {
     per_pixel: f64,
     /// The unit vector towards the hole's direction, at a right angle to it.
     normal: (f64, f64),
-    below: Option<u32>,
-    above: Option<u32>,
 }
 
-/// The boundaries about the centre of a pixel, by rising κ.
+/// A square of the picture, and what is near.
 pub(super) struct Mixture<'a> {
     shader: &'a Shader<'a>,
     place: (f64, f64),
     /// The side of the square, in pixels.
     side: f64,
     pub(super) ray: PlaceRay,
-    near: [Near; MOST],
-    count: usize,
+    /// How κ and x change from a pixel to the next, across and down.
+    change: [(f64, f64); 2],
+    /// The boundaries at the centre's azimuth, by rising κ.
+    boundaries: &'a [Boundary],
 }
 
 /// Nodes and weights of Gauss and Legendre's quadrature over −1 to 1.
@@ -90,54 +88,42 @@ impl<'a> Mixture<'a> {
         };
         let along_x = gradient(z.per_x * side, ta.per_x * side, tb.per_x * side);
         let along_y = gradient(-z.per_y * side, -ta.per_y * side, -tb.per_y * side);
-        let mut mixture = Self {
-            shader,
-            place,
-            side: square,
-            ray,
-            near: [Near::default(); MOST],
-            count: 0,
-        };
-        let x = ray.meets.x;
         let sectors = shader.curves.sectors(ray.meets.quarter);
+        let x = ray.meets.x;
         let sector = sectors
             .iter()
             .find(|sector| x <= sector.x.1)
             .or(sectors.last());
-        let pieces = shader.curves.quarter(ray.meets.quarter);
-        for boundary in sector.map_or(&[][..], |sector| &sector.boundaries) {
-            let piece = &pieces[boundary.piece];
-            let [kept, kept_slope] = piece.value_and_slope(boundary.edge, x);
-            let (h, slope) = if piece.has_pole() {
-                (kept / x, (kept_slope - kept / x) / x)
-            } else {
-                (kept, kept_slope)
-            };
-            let (down, across) = (along_y.0 - slope * along_y.1, along_x.0 - slope * along_x.1);
-            let size = (down * down + across * across).sqrt();
-            let distance = (h - ray.h) / size;
-            if mixture.count < MOST && distance.is_finite() {
-                mixture.near[mixture.count] = Near {
-                    h,
-                    distance,
-                    per_pixel: size,
-                    normal: (across / size, down / size),
-                    below: boundary.below,
-                    above: boundary.above,
-                };
-                mixture.count += 1;
-            }
+        Self {
+            shader,
+            place,
+            side: square,
+            ray,
+            change: [along_x, along_y],
+            boundaries: sector.map_or(&[][..], |sector| &sector.boundaries),
         }
-        mixture
     }
 
-    fn near(&self) -> &[Near] {
-        &self.near[..self.count]
-    }
-
-    fn nearest(&self) -> Option<&Near> {
-        let near = self.near().iter();
-        near.min_by(|a, b| a.distance.abs().total_cmp(&b.distance.abs()))
+    /// Where a boundary is.
+    #[inline]
+    fn near(&self, boundary: &Boundary) -> Near {
+        let meets = self.ray.meets;
+        let piece = &self.shader.curves.quarter(meets.quarter)[boundary.piece];
+        let [kept, kept_slope] = piece.value_and_slope(boundary.edge, meets.x);
+        let (h, slope) = if piece.has_pole() {
+            let h = kept / meets.x;
+            (h, (kept_slope - h) / meets.x)
+        } else {
+            (kept, kept_slope)
+        };
+        let [across, down] = self.change.map(|(kappa, x)| kappa - slope * x);
+        let per_pixel = (down * down + across * across).sqrt();
+        Near {
+            h,
+            distance: (h - self.ray.h) / per_pixel,
+            per_pixel,
+            normal: (across / per_pixel, down / per_pixel),
+        }
     }
 
     /// Returns the mean of what an order shows over its part of the square, which is `share`. `colour` is of an
@@ -183,18 +169,25 @@ impl<'a> Mixture<'a> {
     fn along_line(&self, order: u32, colour: &impl Fn(f64) -> [f32; 3]) -> ([f32; 3], f64) {
         let mut sum = [0.0; 3];
         let mut all_covered = 0.0;
-        let Some(nearest) = self.nearest().filter(|_| self.ray.s > 0.0) else {
+        if self.ray.s <= 0.0 {
             return (sum, 0.0);
-        };
-        let section = Section::new(nearest.normal, self.side);
+        }
         let u_at = self.shader.u_along(order, &self.ray);
-        for pair in self.near().windows(2) {
-            let (low, high) = (&pair[0], &pair[1]);
+        let lambda = self.shader.lambda_along(&self.ray);
+        for pair in self.boundaries.windows(2) {
+            if pair[0].above != Some(order) {
+                continue;
+            }
+            let (low, high) = (self.near(&pair[0]), self.near(&pair[1]));
+            let is_low = low.distance.abs() < high.distance.abs();
+            let normal = if is_low { low.normal } else { high.normal };
+            let section = Section::new(normal, self.side);
             let (from, to) = (
                 low.distance.max(-section.far),
                 high.distance.min(section.far),
             );
-            if low.above != Some(order) || from >= to {
+            // Also where a distance is NaN.
+            if !(from < to) {
                 continue;
             }
             let covered = section.share_below(to) - section.share_below(from);
@@ -209,12 +202,7 @@ impl<'a> Mixture<'a> {
                 let above = (t - low.distance) * low.per_pixel;
                 let below = (high.distance - t) * high.per_pixel;
                 let h = low.h + (high.h - low.h) * above / (above + below);
-                let place = (
-                    self.place.0 + t * nearest.normal.0,
-                    self.place.1 + t * nearest.normal.1,
-                );
-                let lambda = self.shader.lambda(&self.shader.ray(place));
-                let rgb = colour(self.shader.amplitude(u_at(h), lambda));
+                let rgb = colour(self.shader.amplitude(u_at(h), lambda(t, normal)));
                 for (sum, c) in stretch.iter_mut().zip(rgb) {
                     *sum += weight * c;
                 }
@@ -235,9 +223,9 @@ impl<'a> Mixture<'a> {
         if let Some(order) = self.shader.front(&self.ray) {
             return Some((order, self.ray));
         }
-        let covering = self.near().iter().filter_map(|near| {
-            let order = near.above.or(near.below)?;
-            Some((order, near))
+        let covering = self.boundaries.iter().filter_map(|boundary| {
+            let order = boundary.above.or(boundary.below)?;
+            Some((order, self.near(boundary)))
         });
         let (order, near) =
             covering.min_by(|a, b| a.1.distance.abs().total_cmp(&b.1.distance.abs()))?;

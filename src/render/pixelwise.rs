@@ -6,7 +6,7 @@ use core::f64::consts::PI;
 use rayon::prelude::*;
 
 use super::error::{RenderError, blank};
-use super::ink::{Colours, Data, Ink, amplitude};
+use super::ink::{Averaging, Colours, Data, Ink, amplitude};
 use super::planes::Target;
 use crate::light::{Sight, SightGeometry};
 use crate::orbit::integrate::FixedStep;
@@ -83,7 +83,7 @@ impl<O: Orbits> Frame<'_, O> {
                 })
             }
             Target::Planes(planes, layers) => {
-                let data = Data::new(layers, self.colours, self.scene.light())?;
+                let data = Data::new(layers, self.colours, self.scene.light(), Averaging::Centre)?;
                 let width = self.view.width() as usize;
                 let rows = Data::bands(planes, width, 1);
                 rows.into_par_iter()

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use super::error::RenderError;
 use super::frame::{Threads, Workspace};
-use super::ink::{Colours, Data, Rgb8, Rgb16, Rows};
+use super::ink::{Averaging, Colours, Data, Rgb8, Rgb16, Rows};
 use super::pixelwise;
 use super::planes::Target;
 use super::shaded::{ShadedFrame, rows_of_band};
@@ -83,6 +83,11 @@ impl<A: SweptAngles> SceneFrame<'_, A> {
         let gaps = |order, h, meets| curves.u_in_gap(order, h, meets, self.angles);
         let shader = Shader::new(view, curves, self.map.unwrap_or(&none), &gaps);
         let how = (smooth, threads);
+        let averaging = if smooth {
+            Averaging::Square
+        } else {
+            Averaging::Centre
+        };
         let width = view.width() as usize;
         let rows = rows_of_band(width);
         match target {
@@ -93,17 +98,17 @@ impl<A: SweptAngles> SceneFrame<'_, A> {
                 return workspace.draw(view, curves, smooth, threads, samples, stride);
             }
             Target::Rgb8(samples, stride) => {
-                let ink = Rgb8(self.colours()?);
+                let ink = Rgb8(self.colours()?, averaging);
                 let bands = Rows::bands(samples, stride, 3 * width, rows);
                 ShadedFrame::new(workspace.for_shading(), &shader, how).paint(&ink, bands);
             }
             Target::Rgb16(samples, stride) => {
-                let ink = Rgb16(self.colours()?);
+                let ink = Rgb16(self.colours()?, averaging);
                 let bands = Rows::bands(samples, stride, 3 * width, rows);
                 ShadedFrame::new(workspace.for_shading(), &shader, how).paint(&ink, bands);
             }
             Target::Planes(planes, layers) => {
-                let ink = Data::new(layers, self.colours, self.scene.light())?;
+                let ink = Data::new(layers, self.colours, self.scene.light(), averaging)?;
                 let bands = Data::bands(planes, width, rows);
                 ShadedFrame::new(workspace.for_shading(), &shader, how)
                     .paint(&ink, bands.into_iter());

@@ -147,6 +147,20 @@ impl<'a> Shader<'a> {
         self.geometry.angular_momentum(ray.ray).along
     }
 
+    /// Returns [`Self::lambda`] at a distance from a ray's place, in pixels along a unit vector: λ is linear in the
+    /// direction, up to its length.
+    #[inline(always)]
+    pub(super) fn lambda_along(&self, ray: &PlaceRay) -> impl Fn(f64, (f64, f64)) -> f64 + use<> {
+        let PixelRay { z, ta, tb } = ray.ray;
+        let scale =
+            self.view.n_a() / ((z * z + ta * ta + tb * tb).sqrt() * self.view.slope_scale());
+        let (side, change) = (self.view.pixel_side(), self.view.tb());
+        move |distance, (x, y)| {
+            let tb = tb + distance * side * (x * change.per_x - y * change.per_y);
+            tb * scale
+        }
+    }
+
     /// Returns the redshift g of light with the angular momentum `lambda` from the ring at u.
     #[inline(always)]
     pub(super) fn redshift(&self, u: f64, lambda: f64) -> f64 {
