@@ -7,9 +7,12 @@ use crate::light_references::{Reference, SCENES, Seen, Worst, reference};
 use crate::lit::{Edges, Layers};
 use crate::tables::table;
 
-/// The task that the library is built for: what data may be off by, relative (radius, redshift) or not (azimuth,
-/// emission cosine).
+/// What data may be off by, relative (radius, redshift) or not (azimuth, emission cosine).
 const MOST: f64 = 1e-6;
+
+/// The same in units of a float32's last place, with half a unit for the rounding. Patches are right to 1e-7 of the
+/// greatest value in them: an azimuth of 1 beside one of 2π to five units. 3.5 were seen of an azimuth, 1.3 of the rest.
+const UNITS: f64 = 6.0;
 
 #[test]
 fn layers_equal_the_references() {
@@ -21,7 +24,6 @@ fn layers_equal_the_references() {
             let edges = Edges::new(&scene);
             let width = scene.image().width as usize;
             let (mut worst, mut lit, mut at_edges) = (Worst::default(), 0, 0);
-            let mut worst_at = ((0, 0), 0.0, None);
             for &((i, j), known) in &rows {
                 let pixel = j as usize * width + i as usize;
                 let known: Option<Sight> = match known {
@@ -35,11 +37,7 @@ fn layers_equal_the_references() {
                     // A pixel that is covered in part tells of the covered point next to its centre.
                     (Some(_), None) if antialias && share < 1.0 => {}
                     (Some(found), Some(known)) if found.order == known.order => {
-                        let before = worst.float32;
                         worst.add(&found, &known);
-                        if worst.float32 > before {
-                            worst_at = ((i, j), share, Some((found, known)));
-                        }
                         lit += 1;
                     }
                     _ => {
@@ -51,12 +49,10 @@ fn layers_equal_the_references() {
                     }
                 }
             }
-            println!(
-                "{name}, antialias {antialias}: {lit} lit, {at_edges} at edges, {worst:?}\n  {worst_at:?}"
-            );
+            println!("{name}, antialias {antialias}: {lit} lit, {at_edges} at edges, {worst:?}");
             assert!(lit > 250, "{name}: {lit} lit pixels");
-            let most = worst.radius.max(worst.redshift).max(worst.cosine);
-            assert!(most.max(worst.azimuth) <= MOST, "{name}: {worst:?}");
+            assert!(worst.greatest() <= MOST, "{name}: {worst:?}");
+            assert!(worst.float32 <= UNITS, "{name}: {worst:?}");
         }
     }
 }
@@ -67,10 +63,8 @@ fn alpha_equals_the_references() {
     for name in SCENES {
         for antialias in [false, true] {
             let Reference { scene, rows } = reference(name);
-            let layers = Layers::rendered(
-                &scene.clone().with_antialias(antialias),
-                table("standard").lookup(),
-            );
+            let layers =
+                Layers::rendered(&scene.with_antialias(antialias), table("standard").lookup());
             let width = scene.image().width as usize;
             let mut wrong = Vec::new();
             for &((i, j), known) in &rows {

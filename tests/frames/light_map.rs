@@ -8,7 +8,7 @@ use darkness::orbit::exact::Exact;
 use darkness::render::pixelwise;
 use darkness::scene::{Layer, LayerSet, Scene, View};
 use proptest::prelude::*;
-use proptest::test_runner::TestRunner;
+use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 
 use crate::lit::Edges;
 
@@ -44,66 +44,53 @@ fn any_radius() -> impl Strategy<Value = Scene> {
     })
 }
 
+/// How much farther off the map may be than between the nodes where it was measured.
+const UNMEASURED: f64 = 3.0;
+
+/// The rounding to a float32, twice: of the radius, and of what is left of the patches' tolerance.
+const ROUNDING: f64 = 1.2e-7;
+
 #[test]
 fn maps_are_as_accurate_as_they_say() {
-    let lit = Cell::new(0_u32);
-    let claimed = Cell::new(0.0_f64);
-    let worst = Cell::new((0.0_f64, 0.0_f64));
+    let (lit, worst) = (Cell::new(0_u32), Cell::new((0.0_f64, 0.0)));
     let config = ProptestConfig {
-        cases: std::env::var("CASES").map_or(60, |c| c.parse().unwrap()),
+        cases: 200,
         failure_persistence: None,
         ..ProptestConfig::default()
     };
-    let result = TestRunner::new_with_rng(
-        config,
-        proptest::test_runner::TestRng::deterministic_rng(
-            proptest::test_runner::RngAlgorithm::ChaCha,
-        ),
-    )
-    .run(&any_radius(), |scene| {
+    let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
+    let result = TestRunner::new_with_rng(config, rng).run(&any_radius(), |scene| {
         let view = View::new(&scene);
-        let curves = Isoradials::new(&CurveSpec::new(&scene, &view, scene.tolerance()), &Exact);
-        let map = RadiusMap::new(&curves, &Exact);
-        claimed.set(claimed.get().max(map.error()));
+        let spec = CurveSpec::new(&scene, &view, scene.tolerance());
+        let claimed = RadiusMap::new(&Isoradials::new(&spec, &Exact), &Exact).error();
+        prop_assert!(claimed <= 5e-7, "{claimed:e}");
         let layers = LayerSet::default().with(Layer::Order).with(Layer::Radius);
-        let planes = Renderer::with_angles(Exact)
-            .render_layers(&scene, layers)
-            .unwrap();
-        let width = view.width();
-        for pixel in 0..width * view.height() {
-            let place = (pixel % width, pixel / width);
+        let mut renderer = Renderer::with_angles(Exact);
+        let planes = renderer.render_layers(&scene, layers).unwrap();
+        for pixel in 0..view.width() * view.height() {
+            let place = (pixel % view.width(), pixel / view.width());
             let known = pixelwise::sight(&scene, &view, &Exact, place).unwrap();
             let order = planes[0].values[pixel as usize];
             let told = (order >= 0.0).then_some(order as u32);
             if told != known.map(|sight| sight.order) {
+                let is_at_edge = Edges::new(&scene).have(place);
+                prop_assert!(is_at_edge, "{place:?}: {told:?} or {known:?}");
+            } else if let Some(known) = known {
+                let error = (f64::from(planes[1].values[pixel as usize]) * known.u - 1.0).abs();
+                let allowed = UNMEASURED * claimed + ROUNDING;
                 prop_assert!(
-                    Edges::new(&scene).have(place),
-                    "{place:?}: {told:?} or {known:?}"
+                    error <= allowed,
+                    "{place:?}: {error:e}, {claimed:e}, {known:?}"
                 );
-                continue;
+                lit.set(lit.get() + 1);
+                if error > worst.get().0 {
+                    worst.set((error, claimed));
+                }
             }
-            let Some(known) = known else { continue };
-            lit.set(lit.get() + 1);
-            let error = (f64::from(planes[1].values[pixel as usize]) * known.u - 1.0).abs();
-            let (most, of) = worst.get();
-            if error > most {
-                worst.set((error, map.error()));
-            }
-            let _ = of;
-            let allowed = 3.0 * map.error() + 1.2e-7;
-            prop_assert!(
-                error <= allowed,
-                "{place:?}: {error:e} for {:e}, {known:?}",
-                map.error()
-            );
         }
         Ok(())
     });
-    println!(
-        "{} lit pixels, claimed {:e}, worst {:?}",
-        lit.get(),
-        claimed.get(),
-        worst.get()
-    );
+    println!("{} lit pixels, worst {:?}", lit.get(), worst.get());
     result.unwrap_or_else(|error| panic!("{error}"));
+    assert!(lit.get() > 1000, "{} lit pixels", lit.get());
 }

@@ -93,4 +93,10 @@ impl Worst {
             self.float32 = self.float32.max((found - known).abs() / unit);
         }
     }
+
+    /// The largest of the four.
+    pub(crate) fn greatest(&self) -> f64 {
+        let shifts = self.radius.max(self.redshift);
+        shifts.max(self.azimuth).max(self.cosine)
+    }
 }
