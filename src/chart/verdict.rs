@@ -64,3 +64,27 @@ fn duration(milliseconds: f64) -> String {
         format!("{} s", two_significant(milliseconds / 1000.0))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_fastest_right_frames_are_told() {
+        use ComparedMethod::{Adaptive, Rk4, TableDraft, TableFine};
+        let of = |right: &[(ComparedMethod, f64)]| race(right.iter().copied());
+        let both = [
+            (Rk4, 9000.0),
+            (TableFine, 3.0),
+            (Rk4, 5000.0),
+            (TableDraft, 1.13),
+        ];
+        assert_eq!(of(&both), "table 1.1 ms, RK4 5.0 s, 4,400 ×");
+        assert_eq!(
+            of(&[(TableFine, 12.3), (Adaptive, 1.0)]),
+            "table 12 ms, RK4 at no step tried"
+        );
+        assert_eq!(of(&[(Rk4, 250.0)]), "no table, RK4 250 ms");
+        assert_eq!(of(&[]), "neither a table nor RK4");
+    }
+}
