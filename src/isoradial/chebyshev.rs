@@ -51,7 +51,7 @@ impl Chebyshev {
     }
 
     /// The coefficients of the powers of a sum of `T_k`, the lowest first.
-    pub(crate) fn powers(&self, coefficients: &[f64]) -> Vec<f64> {
+    pub(crate) fn powers(coefficients: &[f64]) -> Vec<f64> {
         let n = coefficients.len();
         let mut powers = vec![0.0; n];
         let (mut before, mut this) = (vec![0.0; n], vec![0.0; n]);

@@ -431,7 +431,7 @@ impl<A: SweptAngles> PieceRays<'_, A> {
                 for (u, tau) in guesses.iter_mut().zip(along_tau.nodes()) {
                     *u = rays.u(tau, *u)?;
                 }
-                Some(along_tau.powers(&along_tau.coefficients(&guesses)))
+                Some(Chebyshev::powers(&along_tau.coefficients(&guesses)))
             })
             .collect();
         let rows = rows?;
@@ -445,7 +445,7 @@ impl<A: SweptAngles> PieceRays<'_, A> {
             error: 0.0,
         };
         let mut set = |column: usize, coefficients: &[f64]| {
-            let powers = along_x.powers(coefficients);
+            let powers = Chebyshev::powers(coefficients);
             for (i, power) in powers.iter().rev().enumerate() {
                 section.powers[column / 4 * (degrees.0 + 1) + i][column % 4] = *power;
             }

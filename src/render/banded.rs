@@ -167,30 +167,28 @@ impl DrawnOutline<'_> {
         scratch.left_crossings.sort_unstable();
         top
     }
+}
 
+impl BandScratch {
     /// Calls `row` for each row of the band that was drawn, from the top, with the sum at its left side. It must walk
     /// the cells.
     #[inline]
-    pub(super) fn rows(
-        &self,
-        scratch: &mut BandScratch,
-        mut row: impl FnMut(&mut Cells, usize, i64),
-    ) {
-        let mut left = scratch.left;
-        let mut crossings = scratch.left_crossings.iter().peekable();
-        for number in 0..scratch.rows {
+    pub(super) fn rows(&mut self, mut row: impl FnMut(&mut Cells, usize, i64)) {
+        let mut left = self.left;
+        let mut crossings = self.left_crossings.iter().peekable();
+        for number in 0..self.rows {
             while let Some((_, weight)) = crossings.next_if(|&&(first, _)| first <= number) {
                 left += weight;
             }
-            row(&mut scratch.cells, number, i64::from(left) * ONE);
+            row(&mut self.cells, number, i64::from(left) * ONE);
         }
     }
 }
 
 /// Returns the winding number along the picture's left side, without the path's crossings of it.
 ///
-/// It follows from one place far from the path: from whether what is drawn is seen there, and from what the path adds on the
-/// way there from the left side.
+/// It follows from one place far from the path: from whether what is drawn is seen there, and from what the path adds
+/// on the way there from the left side.
 fn left(path: &OutlinePath, view: &View, sees: impl Fn((f64, f64)) -> bool) -> i32 {
     /// The most places that are tried.
     const MOST: u32 = 24;

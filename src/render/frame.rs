@@ -145,7 +145,7 @@ impl Bands<'_> {
     fn draw<T: MaskSample>(&self, band: usize, pixels: &mut [T], scratch: &mut BandScratch) {
         let (width, stride) = (self.view.width() as usize, self.stride);
         let top = self.drawn.draw(band, scratch);
-        self.drawn.rows(scratch, |cells, row, left| {
+        scratch.rows(|cells, row, left| {
             fill_row(cells, row, left, &mut pixels[row * stride..][..width]);
         });
         for &(column, row) in &scratch.doubtful {

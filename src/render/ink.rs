@@ -11,6 +11,9 @@ use super::shader::{PlaceRay, Shader};
 use crate::light::{DisplayTransform, Palette, Radiance, RadianceTable, Sight, flux};
 use crate::scene::{Layer, LayerSet, Light, Scene, Tone};
 
+/// The most quantities that are interpolated.
+pub(super) const MOST_QUANTITIES: usize = 8;
+
 /// An order's share of a pixel.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Part {
@@ -31,7 +34,7 @@ pub(super) trait Ink: Sync {
         let _ = (band, shader, top, smooth);
     }
 
-    /// How many quantities are interpolated, at most 8.
+    /// How many quantities are interpolated, at most [`MOST_QUANTITIES`].
     fn quantities(&self) -> usize;
 
     /// How far they may be off, as a share of their size.
@@ -46,14 +49,14 @@ pub(super) trait Ink: Sync {
     fn evaluate(&self, shader: &Shader<'_>, order: u32, u: f64, ray: &PlaceRay, values: &mut [f64]);
 
     /// The quantity that is an angle, if there is one.
-    fn kept(&self, values: &[f64]) -> f64 {
+    fn angle(&self, values: &[f64]) -> f64 {
         let _ = values;
         0.0
     }
 
-    /// Makes angles continuous with the one `kept`.
-    fn unwrap(&self, values: &mut [f64], kept: &f64) {
-        let _ = (values, kept);
+    /// Makes the angle continuous with the first one.
+    fn unwrap(&self, values: &mut [f64], first: f64) {
+        let _ = (values, first);
     }
 
     /// Paints pixels of one row, wholly covered, from a patch.
@@ -521,7 +524,7 @@ impl<'a> Data<'a> {
 
     /// Sets a pixel of every layer to what a ray sees.
     pub(super) fn set_sight(&self, band: &mut PlaneRows<'_>, pixel: usize, sight: &Sight) {
-        let mut values = [0.0; 8];
+        let mut values = [0.0; MOST_QUANTITIES];
         for (value, quantity) in values.iter_mut().zip(&self.quantities) {
             *value = match quantity {
                 Quantity::Radius => 1.0 / sight.u,
@@ -535,7 +538,7 @@ impl<'a> Data<'a> {
     }
 
     /// Sets a pixel that sees no disk.
-    pub(super) fn set_hidden(&self, band: &mut PlaneRows<'_>, pixel: usize, is_captured: bool) {
+    pub(super) fn set_hidden(band: &mut PlaneRows<'_>, pixel: usize, is_captured: bool) {
         for (layer, plane) in &mut band.planes {
             if *layer == Layer::Alpha && is_captured {
                 plane[pixel] = 1.0;
@@ -671,14 +674,14 @@ impl Ink for Data<'_> {
         self.layers.has(Layer::Colour)
     }
 
-    fn kept(&self, values: &[f64]) -> f64 {
+    fn angle(&self, values: &[f64]) -> f64 {
         self.place_of(Quantity::Azimuth)
             .map_or(0.0, |place| values[place])
     }
 
-    fn unwrap(&self, values: &mut [f64], kept: &f64) {
+    fn unwrap(&self, values: &mut [f64], first: f64) {
         if let Some(place) = self.place_of(Quantity::Azimuth) {
-            let turn = values[place] - kept;
+            let turn = values[place] - first;
             if turn > PI {
                 values[place] -= TAU;
             } else if turn < -PI {
@@ -767,7 +770,7 @@ impl Ink for Data<'_> {
     ) {
         let pixel = row * band.width + column;
         if let Some((order, ray)) = mixture.nearest_covered() {
-            let mut values = [0.0; 8];
+            let mut values = [0.0; MOST_QUANTITIES];
             if !self.quantities.is_empty() {
                 let u = shader.u_on_disk(order, &ray);
                 self.evaluate(shader, order, u, &ray, &mut values);

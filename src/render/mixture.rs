@@ -186,8 +186,7 @@ impl<'a> Mixture<'a> {
                 low.distance.max(-section.far),
                 high.distance.min(section.far),
             );
-            // Also where a distance is NaN.
-            if !(from < to) {
+            if from >= to || (to - from).is_nan() {
                 continue;
             }
             let covered = section.share_below(to) - section.share_below(from);

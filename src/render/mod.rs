@@ -40,6 +40,7 @@ mod ink;
 pub mod mask;
 mod mixture;
 pub mod needs;
+mod painter;
 mod patch;
 mod path;
 pub mod pixelwise;

@@ -4,6 +4,7 @@
 //! and polynomials give the rest. Whether they do is told by the last coefficients: those of an analytic function fall
 //! by about the same factor each, so that what is left out is smaller than the last one.
 
+use super::ink::MOST_QUANTITIES;
 use crate::isoradial::Chebyshev;
 
 /// Fits polynomials of one degree in each coordinate.
@@ -48,7 +49,7 @@ impl PatchFit {
             let coefficients = chebyshev.coefficients(&unit);
             last[0][node] = coefficients[degree];
             last[1][node] = coefficients[degree - 1];
-            for (power, value) in chebyshev.powers(&coefficients).into_iter().enumerate() {
+            for (power, value) in Chebyshev::powers(&coefficients).into_iter().enumerate() {
                 powers[power * count + node] = value;
             }
         }
@@ -83,7 +84,7 @@ impl PatchFit {
         patch.count = count;
         patch.values.clear();
         patch.values.resize(quantities * count * count, 0.0);
-        let mut at = [0.0; 8];
+        let mut at = [0.0; MOST_QUANTITIES];
         for (j, y) in self.nodes.iter().enumerate() {
             for (i, x) in self.nodes.iter().enumerate() {
                 let place = (patch.centre.0 + half_x * x, patch.centre.1 + half_y * y);
@@ -118,8 +119,7 @@ impl PatchFit {
                     }
                     left = f64::max(left, share * along_x.abs().max(along_y.abs()));
                 }
-                // Also where it is NaN.
-                if !(left <= allowed) {
+                if left > allowed || left.is_nan() {
                     return false;
                 }
             }

@@ -94,7 +94,7 @@ impl<O: Orbits> Frame<'_, O> {
                             let place = (i as u32, j as u32);
                             match sight(self.scene, self.view, self.orbits, place)? {
                                 Some(sight) => data.set_sight(&mut row, i, &sight),
-                                None => data.set_hidden(&mut row, i, self.is_captured(place)?),
+                                None => Data::set_hidden(&mut row, i, self.is_captured(place)?),
                             }
                         }
                         row_done();

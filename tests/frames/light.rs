@@ -3,9 +3,7 @@
 
 use core::cell::Cell;
 use core::f64::consts::{PI, TAU};
-use std::path::{Path, PathBuf};
 
-use darkness::light::Sight;
 use darkness::orbit::exact::Exact;
 use darkness::orbit::integrate::Adaptive;
 use darkness::orbit::{EventKind, Fate, Orbits, Ray};
@@ -16,58 +14,8 @@ use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 
 use crate::any_scene::any_scene;
+use crate::light_references::{Reference, SCENES, Seen, Worst, reference};
 use crate::tables::table;
-
-/// The scenes of `tests/reference/light`.
-const SCENES: [&str; 5] = [
-    "camera-over-disk",
-    "classic-80deg",
-    "inside-photon-sphere",
-    "rolled-tilted-disk",
-    "telephoto-1e6",
-];
-
-/// What the centre of a pixel sees.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Seen {
-    Disk(Sight),
-    Sky,
-    Hole,
-}
-
-/// The pixels of one reference.
-struct Reference {
-    scene: Scene,
-    rows: Vec<((u32, u32), Seen)>,
-}
-
-fn reference(name: &str) -> Reference {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/light");
-    let read = |file: PathBuf| std::fs::read_to_string(file).expect("a reference file");
-    let scene = Scene::from_toml(&read(folder.join(format!("{name}.toml")))).unwrap();
-    let text = read(folder.join(format!("{name}.csv")));
-    let rows = text.lines().skip(1).map(row).collect();
-    Reference { scene, rows }
-}
-
-/// Reads `column,row,sees,order,radius,azimuth,redshift,emission_cosine,…`.
-fn row(line: &str) -> ((u32, u32), Seen) {
-    let fields: Vec<&str> = line.split(',').collect();
-    let number = |k: usize| -> f64 { fields[k].parse().expect(line) };
-    let seen = match fields[2] {
-        "disk" => Seen::Disk(Sight {
-            order: fields[3].parse().expect(line),
-            u: 1.0 / number(4),
-            azimuth: number(5),
-            redshift: number(6),
-            emission_cosine: number(7),
-        }),
-        "sky" => Seen::Sky,
-        "hole" => Seen::Hole,
-        other => panic!("{other}: {line}"),
-    };
-    ((number(0) as u32, number(1) as u32), seen)
-}
 
 fn seen(scene: &Scene, view: &View, orbits: &impl Orbits, pixel: (u32, u32)) -> Seen {
     let sight = pixelwise::sight(scene, view, orbits, pixel).unwrap();
@@ -80,44 +28,6 @@ fn seen(scene: &Scene, view: &View, orbits: &impl Orbits, pixel: (u32, u32)) -> 
     match orbits.follow(ray, &[]).unwrap()[0].kind {
         EventKind::End(Fate::Capture) => Seen::Hole,
         _ => Seen::Sky,
-    }
-}
-
-/// The largest errors of what a method says.
-#[derive(Debug, Default)]
-struct Worst {
-    /// Relative.
-    radius: f64,
-    azimuth: f64,
-    /// Relative.
-    redshift: f64,
-    cosine: f64,
-    /// Of any of the four, in units of the last place of a float32.
-    float32: f64,
-}
-
-impl Worst {
-    fn add(&mut self, found: &Sight, known: &Sight) {
-        let difference = (found.azimuth - known.azimuth).abs();
-        let azimuth = difference.min(TAU - difference);
-        self.radius = self.radius.max((found.u / known.u - 1.0).abs());
-        self.azimuth = self.azimuth.max(azimuth);
-        self.redshift = self
-            .redshift
-            .max((found.redshift / known.redshift - 1.0).abs());
-        let cosine = (found.emission_cosine - known.emission_cosine).abs();
-        self.cosine = self.cosine.max(cosine);
-        let pairs = [
-            (1.0 / found.u, 1.0 / known.u),
-            (known.azimuth + azimuth, known.azimuth),
-            (found.redshift, known.redshift),
-            (found.emission_cosine, known.emission_cosine),
-        ];
-        for (found, known) in pairs {
-            let known32 = known as f32;
-            let unit = f64::from(known32.next_up() - known32);
-            self.float32 = self.float32.max((found - known).abs() / unit);
-        }
     }
 }
 

@@ -15,6 +15,8 @@ mod tools;
 
 mod any_scene;
 mod drawn;
+mod light_references;
+mod lit;
 mod methods;
 mod shares;
 
@@ -25,6 +27,11 @@ mod coverage_rings;
 mod extreme_cameras;
 mod gyoto;
 mod light;
+mod light_average;
+mod light_bytes;
+mod light_layers;
+mod light_map;
+mod light_methods;
 mod masks;
 mod needs;
 mod outline;
