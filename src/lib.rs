@@ -13,6 +13,26 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! With light, in colour and as data:
+//!
+//! ```
+//! use darkness::scene::{Layer, LayerSet};
+//! use darkness::table::Spec;
+//! use darkness::{Renderer, Scene, Table};
+//!
+//! # let table = Table::generate(&Spec::standard())?;
+//! let scene = Scene::builtin("lit")?.with_size(320, 180)?;
+//! let mut renderer = Renderer::new(&table);
+//! let picture = renderer.render_rgb(&scene)?; // an image::RgbImage
+//! assert!(picture.get_pixel(60, 95).0 > picture.get_pixel(260, 95).0); // what comes towards us is brighter
+//!
+//! let layers = LayerSet::default().with(Layer::Radius).with(Layer::Redshift);
+//! let planes = renderer.render_layers(&scene, layers)?;
+//! let (radius, redshift) = (planes[0].values[95 * 320 + 60], planes[1].values[95 * 320 + 60]);
+//! assert!(radius > 3.0 && radius < 12.0 && redshift > 1.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! Single rays, from where they start to the horizon or to infinity:
 //!
 //! ```
@@ -43,7 +63,8 @@
 //! | [`table`] | [`Table`]: the swept angles of all rays, in a memory-mapped file |
 //! | [`orbit`] | [`Ray`] and what happens to it: by elliptic integrals, by integration, by the table |
 //! | [`isoradial`] | the curves in the picture at which the disk begins and ends, and the outline they make |
-//! | [`render`] | [`Renderer`]: frames and batches of frames |
+//! | [`light`] | redshift, flux, black bodies, colour: what a ray that meets the disk shows |
+//! | [`render`] | [`Renderer`]: frames and batches of frames, as masks, in colour or as layers of data |
 //! | `chart` | speed against accuracy of every method, measured and drawn (feature `chart`) |
 //! | `cli` | the program `darkness` (feature `cli`, on by default) |
 //!

@@ -76,11 +76,11 @@ impl ComparedMethod {
         Self::Euler,
         Self::Rk4,
         Self::Adaptive,
+        Self::Exact,
         Self::TableScaled,
         Self::TableDraft,
         Self::TableStandard,
         Self::TableFine,
-        Self::Exact,
     ];
 
     /// Returns the method's name in the CSV file.

@@ -74,7 +74,7 @@ mod tests {
         assert_eq!(two_digits(0.0), "0");
         assert_eq!(two_digits(3.21e-9), "3.3e-9");
         let two = [1.13, 4512.0, 12.6, 0.278, 995.0, 9.96].map(two_significant);
-        assert_eq!(two, ["1.1", "4,500", "13", "0.28", "1,000", "10.0"]);
+        assert_eq!(two, ["1.1", "4,500", "13", "0.28", "1,000", "10"]);
     }
 
     #[test]

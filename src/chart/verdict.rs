@@ -12,16 +12,17 @@ const REDSHIFT: f64 = 1e-6;
 /// The verdict's two parts: on edges, and on colours. Joined by a space they are one sentence.
 pub(super) fn verdict(chart: &ChartData) -> [String; 2] {
     let (scene, light) = (&chart.scene, &chart.light);
-    let edges = race(&scene.points.iter().filter_map(|point| {
+    let edges = scene.points.iter().filter_map(|point| {
         let is_right = point.displacement() <= scene.tolerance;
         is_right.then_some((point.method, point.milliseconds))
-    }));
-    let colours = race(&light.points.iter().filter_map(|point| {
+    });
+    let colours = light.points.iter().filter_map(|point| {
         let error = point.redshift.error?.max;
         // The table's frame is drawn as the first one of a film is.
         let is_told = point.frame == LitFrame::NewRadius || point.method == ComparedMethod::Rk4;
         (is_told && error <= REDSHIFT).then_some((point.method, point.milliseconds))
-    }));
+    });
+    let [edges, colours] = [edges.collect::<Vec<_>>(), colours.collect()].map(|right| race(&right));
     [
         format!(
             "{} at {} × {} on one thread: edges right to {:?} pixels: {edges};",
@@ -32,10 +33,10 @@ pub(super) fn verdict(chart: &ChartData) -> [String; 2] {
 }
 
 /// Compares the fastest frame by a table and by RK4 among those that are right.
-fn race(right: &(impl Iterator<Item = (ComparedMethod, f64)> + Clone)) -> String {
+fn race(right: &[(ComparedMethod, f64)]) -> String {
     let fastest = |is_of: fn(ComparedMethod) -> bool| {
-        let of = right.clone().filter(|(method, _)| is_of(*method));
-        of.map(|(_, time)| time).min_by(f64::total_cmp)
+        let of = right.iter().filter(|(method, _)| is_of(*method));
+        of.map(|(_, time)| *time).min_by(f64::total_cmp)
     };
     let table = fastest(|method| {
         matches!(
@@ -62,5 +63,28 @@ fn duration(milliseconds: f64) -> String {
         format!("{} ms", two_significant(milliseconds))
     } else {
         format!("{} s", two_significant(milliseconds / 1000.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_fastest_right_frames_are_told() {
+        use ComparedMethod::{Adaptive, Rk4, TableDraft, TableFine};
+        let both = [
+            (Rk4, 9000.0),
+            (TableFine, 3.0),
+            (Rk4, 5000.0),
+            (TableDraft, 1.13),
+        ];
+        assert_eq!(race(&both), "table 1.1 ms, RK4 5.0 s, 4,400 ×");
+        assert_eq!(
+            race(&[(TableFine, 12.3), (Adaptive, 1.0)]),
+            "table 12 ms, RK4 at no step tried"
+        );
+        assert_eq!(race(&[(Rk4, 250.0)]), "no table, RK4 250 ms");
+        assert_eq!(race(&[]), "neither a table nor RK4");
     }
 }

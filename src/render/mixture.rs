@@ -13,7 +13,7 @@ use super::shader::{PlaceRay, Shader};
 use crate::isoradial::Boundary;
 
 /// The line may be this far from the true share.
-const WRONG: f64 = 0.1;
+const WRONG: f64 = 0.05;
 
 /// Parts of a side of a pixel where the line is not enough.
 const SIDE: usize = 6;
@@ -190,7 +190,7 @@ impl<'a> Mixture<'a> {
                 continue;
             }
             let covered = section.share_below(to) - section.share_below(from);
-            let is_thin = to - from > 0.25 * (high.distance - low.distance);
+            let is_thin = to - from > 0.03 * (high.distance - low.distance);
             let nodes = if is_thin { &FIVE[..] } else { &TWO[..] };
             let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
             let (mut stretch, mut weights) = ([0.0; 3], 0.0);

@@ -152,6 +152,8 @@ fn a_quick_chart_has_every_method_with_its_errors_and_failures() {
         "table fine",
         "tables of other sizes",
         "Pareto front",
+        "table draft, map",
+        "exact, by pixel",
         "failed",
         "small at 64 × 36",
     ] {
@@ -161,9 +163,12 @@ fn a_quick_chart_has_every_method_with_its_errors_and_failures() {
     let csv = fs::read_to_string(folder.path().join("a.csv")).unwrap();
     let rows = rows(&csv);
     let of = |panel: &'static str| rows.iter().filter(move |row| row.panel() == panel);
-    for panel in ["rays", "critical", "scene"] {
+    for panel in ["rays", "critical", "scene", "light"] {
         let methods: BTreeSet<_> = of(panel).map(Row::method).collect();
         let mut expected = BTreeSet::from(METHODS);
+        if panel == "light" {
+            expected.remove("euler");
+        }
         if panel == "rays" {
             expected.insert("table-scaled");
         }
@@ -189,6 +194,18 @@ fn a_quick_chart_has_every_method_with_its_errors_and_failures() {
     rays_are_as_wrong_as_they_should_be(&of("rays").collect::<Vec<_>>());
     failures_are_told(&of("critical").collect::<Vec<_>>());
     edges_are_where_they_should_be(&of("scene").collect::<Vec<_>>());
+    light_is_as_right_as_it_should_be(&of("light").collect::<Vec<_>>());
+
+    // The verdict is on the standard error, and its two parts are lines of the figure.
+    let verdict = stderr.lines().find(|line| line.contains("edges right to"));
+    let verdict = verdict.unwrap_or_else(|| panic!("no verdict: {stderr}"));
+    let (edges, colours) = verdict.split_at(verdict.find("in colour").unwrap());
+    for (part, words) in [(edges, "0.001 pixels: table "), (colours, "1e-6: table ")] {
+        assert!(svg.contains(part.trim()), "{part:?} is not in the figure");
+        for word in [words, " ms, RK4 ", " ×"] {
+            assert!(part.contains(word), "{word:?} is not in {part:?}");
+        }
+    }
 }
 
 fn rays_are_as_wrong_as_they_should_be(rows: &[&Row<'_>]) {
@@ -263,6 +280,47 @@ fn edges_are_where_they_should_be(rows: &[&Row<'_>]) {
         }
     }
     assert!(orders >= 2, "{orders}");
+}
+
+fn light_is_as_right_as_it_should_be(rows: &[&Row<'_>]) {
+    let row = |method: &str, key: &str, value: &str, of: &str| {
+        let mut found = rows.iter().filter(|row| {
+            row.method() == method && row.word(key) == Some(value) && row.word("of") == Some(of)
+        });
+        let row = found.next();
+        row.unwrap_or_else(|| panic!("{method}, {key}={value}, {of}"))
+    };
+    // Edges that hard pixels show are those of their centres' rays, by every method but coarse steps.
+    for row in rows.iter().filter(|row| row.method() != "rk4") {
+        assert_eq!(row.number("failures"), Some(0.0), "{:?}", row.fields);
+    }
+    let worst = |method: &str, key: &str, value: &str, of: &str| {
+        row(method, key, value, of).number("error_max").unwrap()
+    };
+    let (coarse, fine) = (
+        worst("rk4", "h", "0.2", "redshift"),
+        worst("rk4", "h", "0.02", "redshift"),
+    );
+    assert!(coarse > 100.0 * fine && fine < 1e-5, "{coarse:e}, {fine:e}");
+    // A float of 32 bits holds a redshift to 6e-8, the drawing adds as much, and the draft table's angles 6e-7 rad.
+    for (method, by_pixel, by_map) in [
+        ("exact", 1e-13, 2e-7),
+        ("table-fine", 1e-11, 2e-7),
+        ("table-standard", 1e-8, 2e-7),
+        ("table-draft", 5e-6, 5e-6),
+    ] {
+        for (drawn, promised) in [
+            ("pixel-by-pixel", by_pixel),
+            ("map-of-new-radius", by_map),
+            ("map-of-same-radius", by_map),
+        ] {
+            let redshift = worst(method, "drawn", drawn, "redshift");
+            assert!(redshift <= promised, "{method}, {drawn}: {redshift:e}");
+            // Luminance rises with up to the tenth power of the redshift, and its table is right to 1e-5.
+            let luminance = worst(method, "drawn", drawn, "luminance");
+            assert!(luminance <= 1e-4, "{method}, {drawn}: {luminance:e}");
+        }
+    }
 }
 
 #[test]

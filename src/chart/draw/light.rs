@@ -9,8 +9,8 @@ use crate::scene::Light;
 
 /// The titles of the columns and the names of their y axes.
 const COLUMNS: [(&str, &str); 3] = [
-    ("redshift", "relative error of the redshift"),
-    ("colour", "error of the luminance (hottest ring: 1)"),
+    ("redshift", "relative error"),
+    ("luminance", "error / hottest ring's luminance"),
     ("wrong pixels", "wrong pixels (share)"),
 ];
 
@@ -27,12 +27,11 @@ pub(super) fn draw(area: &PageArea<'_>, light: &LightPanel) -> Result<(), DrawEr
         Light::Bolometric => "grey light of all wavelengths".to_owned(),
     };
     let caption = format!(
-        "{} at {} × {}, the disk as {source}, hard edges, whole frames in 8-bit colour on one thread. Filled: from the map\n\
-         of the camera's radius, left the second frame of a radius, right the first, which builds curves and map. Hollow:\n\
-         each pixel's ray by itself, timed on an even sample. Marker: the largest error of the pixels that show the\n\
-         disk in the right order; whisker: from the 99th percentile. Luminance: as it follows from radius and redshift at a\n\
-         pixel's centre. Wrong pixels: the share of {} that miss the disk, see it by mistake, or see another order;\n\
-         of slow methods fewer are compared (see the CSV).",
+        "{} at {} × {}, the disk as {source}, hard edges, whole frames in 8-bit colour on one thread.\n\
+         Filled: from the map of the camera's radius; curves and map are built for each frame. Hollow, RK4, adaptive:\n\
+         along each pixel's ray, timed on an even sample. Marker: the largest error of the pixels that show the disk in\n\
+         the right order; whisker: from the 99th percentile. Luminance: what follows from radius and redshift. Wrong\n\
+         pixels: the share of {} that miss the disk, see it by mistake, or see another order.",
         light.name,
         light.size.0,
         light.size.1,
@@ -54,22 +53,25 @@ pub(super) fn draw(area: &PageArea<'_>, light: &LightPanel) -> Result<(), DrawEr
 /// Returns the lines of a column: every method, as far as it is drawn pixel by pixel and from the map.
 fn lines(points: &[LightPoint], column: usize) -> Vec<PlotLine> {
     let mut lines = Vec::new();
-    let pixelwise = |frame| frame == LitFrame::PixelByPixel;
     for method in ComparedMethod::ALL {
         let (style, label) = SeriesStyle::of(method);
-        let kinds = match method {
+        let series = match method {
             ComparedMethod::Euler | ComparedMethod::TableScaled => vec![],
-            ComparedMethod::Rk4 | ComparedMethod::Adaptive => vec![(style, label.to_owned(), true)],
+            ComparedMethod::Rk4 | ComparedMethod::Adaptive => {
+                vec![(style, label.to_owned(), LitFrame::PixelByPixel)]
+            }
             _ => vec![
-                (style, format!("{label}, map"), false),
-                (style.hollow(), format!("{label}, by pixel"), true),
+                (style, format!("{label}, map"), LitFrame::NewRadius),
+                (
+                    style.hollow(),
+                    format!("{label}, by pixel"),
+                    LitFrame::PixelByPixel,
+                ),
             ],
         };
-        for (style, label, is_pixelwise) in kinds {
-            let of = points
-                .iter()
-                .filter(|point| point.method == method && pixelwise(point.frame) == is_pixelwise);
-            let mut of: Vec<_> = of.collect();
+        for (style, label, frame) in series {
+            let of = |point: &&LightPoint| point.method == method && point.frame == frame;
+            let mut of: Vec<_> = points.iter().filter(of).collect();
             of.sort_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds));
             let mut line = PlotLine::new((style, &label), Vec::new());
             for point in of {

@@ -16,10 +16,10 @@ pub use plot::DrawError;
 use style::{GREY, bold, font, px};
 
 /// The size of the page as shown, and where on it the panels after the first begin, below the title.
-const SIZE: (i32, i32) = (1000, 2140);
+const SIZE: (i32, i32) = (1000, 2210);
 const CRITICAL: i32 = 635;
 const SCENE: i32 = CRITICAL + 580;
-const LIGHT: i32 = SCENE + 420;
+const LIGHT: i32 = SCENE + 440;
 
 /// Draws the figure and returns it as the text of an SVG file.
 ///

@@ -117,13 +117,13 @@ pub(super) fn decades(values: impl Iterator<Item = f64>) -> Range<f64> {
     libm::pow(10.0, low.floor())..libm::pow(10.0, high.ceil().max(low.floor() + 1.0))
 }
 
-/// Returns the range of all positive finite `values`, and 1 … 10 without any.
+/// Returns the range of all positive finite `values`, and 0.1 … 1 without any.
 fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
     let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
     for value in values.filter(|value| *value > 0.0 && value.is_finite()) {
         (low, high) = (low.min(value), high.max(value));
     }
-    if low <= high { low..high } else { 1.0..10.0 }
+    if low <= high { low..high } else { 0.1..1.0 }
 }
 
 /// Returns a logarithmic axis with at most `labels` ticks.

@@ -97,7 +97,11 @@ impl SeriesStyle {
 
     /// Returns the colours of the marker's inside and of its outline.
     pub(super) fn fill(self) -> (ShapeStyle, ShapeStyle) {
-        let inside = if self.is_hollow { WHITE } else { self.colour };
+        let inside = if self.is_hollow {
+            TRANSPARENT
+        } else {
+            self.colour.to_rgba()
+        };
         (inside.filled(), self.colour.stroke_width(3))
     }
 

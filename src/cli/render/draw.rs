@@ -1,7 +1,7 @@
 //! How frames are drawn. This is the only file of the program that calls the renderer.
 
 use super::super::method::Method;
-use crate::isoradial::Isoradials;
+use crate::isoradial::{Isoradials, RadiusMap};
 use crate::orbit::exact::Exact;
 pub(super) use crate::render::batch::DrawnFrame;
 use crate::render::batch::{self, Curved, Frames, RayByRay, Sharing};
@@ -62,5 +62,13 @@ pub(super) fn curves(needs: &Needs, method: &Method) -> Isoradials {
     match method {
         Method::Table(table) => Isoradials::new(&needs.curve_spec, &table.lookup()),
         _ => Isoradials::new(&needs.curve_spec, &Exact),
+    }
+}
+
+/// The map of these curves' radius, by the method that drew them.
+pub(super) fn map(curves: &Isoradials, method: &Method) -> RadiusMap {
+    match method {
+        Method::Table(table) => RadiusMap::new(curves, &table.lookup()),
+        _ => RadiusMap::new(curves, &Exact),
     }
 }

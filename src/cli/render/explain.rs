@@ -11,7 +11,7 @@ use super::super::stdio::print;
 use super::super::threads::start_threads;
 use super::args::RenderArgs;
 use super::{draw, options};
-use crate::isoradial::Isoradials;
+use crate::isoradial::{Isoradials, RadiusMap};
 use crate::render::needs::{Candidate, Needs};
 use crate::scene::{Animation, ImageSize, Scene};
 
@@ -38,7 +38,10 @@ pub(super) fn run(
     let method = options::method(args, checked, report)?;
     let table = args.method.table_path(needed);
     let curves = draw::curves(&needs, &method);
-    print(&text(&scene, &needs, &curves, &method, table.as_deref()))?;
+    let needs_map = scene.light().is_some() || !scene.layers().is_empty();
+    let map = needs_map.then(|| draw::map(&curves, &method));
+    let drawn = (&curves, map.as_ref());
+    print(&text(&scene, &needs, drawn, &method, table.as_deref()))?;
     Ok(())
 }
 
@@ -46,7 +49,7 @@ pub(super) fn run(
 fn text(
     scene: &Scene,
     needs: &Needs,
-    curves: &Isoradials,
+    (curves, map): (&Isoradials, Option<&RadiusMap>),
     method: &Method,
     path: Option<&Path>,
 ) -> String {
@@ -125,10 +128,23 @@ fn text(
             figure(error.rounding)
         ),
     );
-    line(
-        "not needed",
-        "a ray for each pixel; spin, thickness, colour and sky are not modelled".into(),
-    );
+    if let Some(map) = map {
+        line(
+            "map",
+            format!(
+                "of the radius: {} nodes, {} bytes, radii right to {} of themselves",
+                map.nodes(),
+                map.bytes(),
+                figure(map.error())
+            ),
+        );
+    }
+    let light = if map.is_some() {
+        "spin, thickness and sky are not modelled"
+    } else {
+        "no map of the radius, since no light and no data are asked for; spin, thickness and sky are not modelled"
+    };
+    line("not needed", format!("a ray for each pixel; {light}"));
     text
 }
 
