@@ -11,7 +11,8 @@ use crate::tables::table;
 const MOST: f64 = 1e-6;
 
 /// The same in units of a float32's last place, with half a unit for the rounding. Patches are right to 1e-7 of the
-/// greatest value in them: an azimuth of 1 beside one of 2π to five units. 3.5 were seen of an azimuth, 1.3 of the rest.
+/// greatest value in them: an azimuth of 1 beside one of 2π to five units. 3.5 were seen of an azimuth, 1.3 of the
+/// rest.
 const UNITS: f64 = 6.0;
 
 #[test]

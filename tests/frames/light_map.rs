@@ -15,33 +15,37 @@ use crate::lit::Edges;
 /// A scene far or near, above the disk's plane, in it or about it, the disk of any width.
 fn any_radius() -> impl Strategy<Value = Scene> {
     let unit = || 0.0..1.0_f64;
-    let log = |share: f64, from: f64, to: f64| from * libm::pow(to / from, share);
-    (0..5_usize, [unit(), unit(), unit(), unit(), unit()]).prop_filter_map("it stands in the disk", move |(kind, [a, b, c, d, e])| {
-        let radius = match kind {
-            0 => 1.0 + log(a, 1e-3, 0.5),
-            1 => [1e4, 1e6][usize::from(a > 0.5)],
-            _ => log(a, 1.5, 300.0),
-        };
-        let z = match kind {
-            2 => log(b, 1e-6, 1e-2),
-            _ => 2.0 * b - 1.0,
-        };
-        let inner = if c < 0.7 { 3.0 } else { log(c, 3.0, 30.0) };
-        let outer = match kind {
-            3 => log(d, 20.0, 1e6),
-            _ => inner + log(d, 1e-2, 100.0),
-        };
-        let position = [radius * (1.0 - z * z).sqrt(), 0.0, radius * z];
-        // From a picture of the rings to one of the whole disk, or to one as wide as can be.
-        let view = libm::atan(log(e, 1.5, (1.5 * outer).max(3.0)) / radius);
-        let fov = (2.0 * view.to_degrees()).min(120.0);
-        let text = format!(
-            "[camera]\nposition = [{:e}, {:e}, {:e}]\nfov = {fov:e}\n[disk]\ninner = {inner:e}\nouter = {outer:e}\n\
-             [image]\nwidth = 24\nheight = 18\nantialias = false\n",
-            position[0], position[1], position[2]
-        );
-        Scene::from_toml(&text).ok()
+    let numbers = [unit(), unit(), unit(), unit(), unit()];
+    (0..5_usize, numbers).prop_filter_map("it stands in the disk", |(kind, numbers)| {
+        made(kind, numbers)
     })
+}
+
+fn made(kind: usize, [a, b, c, d, e]: [f64; 5]) -> Option<Scene> {
+    let log = |share: f64, from: f64, to: f64| from * libm::pow(to / from, share);
+    let radius = match kind {
+        0 => 1.0 + log(a, 1e-3, 0.5),
+        1 => [1e4, 1e6][usize::from(a > 0.5)],
+        _ => log(a, 1.5, 300.0),
+    };
+    let z = match kind {
+        2 => log(b, 1e-6, 1e-2),
+        _ => 2.0 * b - 1.0,
+    };
+    let inner = if c < 0.7 { 3.0 } else { log(c, 3.0, 30.0) };
+    let outer = match kind {
+        3 => log(d, 20.0, 1e6),
+        _ => inner + log(d, 1e-2, 100.0),
+    };
+    // From a picture of the rings to one of the whole disk, or as wide as can be.
+    let half = libm::atan(log(e, 1.5, (1.5 * outer).max(3.0)) / radius);
+    let fov = (2.0 * half.to_degrees()).min(120.0);
+    let (x, z) = (radius * (1.0 - z * z).sqrt(), radius * z);
+    let text = format!(
+        "[camera]\nposition = [{x:e}, 0.0, {z:e}]\nfov = {fov:e}\n[disk]\ninner = {inner:e}\nouter = {outer:e}\n\
+         [image]\nwidth = 24\nheight = 18\nantialias = false\n",
+    );
+    Scene::from_toml(&text).ok()
 }
 
 /// How much farther off the map may be than between the nodes where it was measured.

@@ -20,9 +20,8 @@ const MOST: f64 = 1e-6;
 /// that the rounding may fall otherwise.
 const MOST_CODES: u8 = 1;
 
-/// So many of the pixels that are seen may have another code, one in so many: a twentieth of a code in each channel
-/// at the very most.
-const ONE_IN: usize = 20;
+/// One in so many of the pixels that are seen may have another code. One in 1,500 was seen.
+const ONE_IN: usize = 500;
 
 /// How frames differ from those of exact rays.
 #[derive(Debug, Default)]
