@@ -31,7 +31,8 @@ pub(super) fn draw(area: &PageArea<'_>, light: &LightPanel) -> Result<(), DrawEr
          Filled: from the map of the camera's radius; curves and map are built for each frame. Hollow, RK4, adaptive:\n\
          along each pixel's ray, timed on an even sample. Marker: the largest error of the pixels that show the disk in\n\
          the right order; whisker: from the 99th percentile. Luminance: what follows from radius and redshift. Wrong\n\
-         pixels: the share of {} that miss the disk, see it by mistake, or see another order.",
+         pixels: the share of {} (of slow methods fewer, see the CSV) that miss the disk, see it by mistake, or see\n\
+         another order.",
         light.name,
         light.size.0,
         light.size.1,
