@@ -64,7 +64,7 @@ const INNERMOST_U: f64 = 0.6;
 /// Beyond the outer edge u falls to no less than about this share of the edge's.
 const OUTERMOST_SHARE: f64 = 0.5;
 
-/// Where each ray of one camera radius meets the disk: see the [module's page](self).
+/// Where each ray of one camera radius meets the disk.
 #[derive(Debug, Clone, Default)]
 pub struct RadiusMap {
     /// For each of the two quarter turns, the pieces of its orders, lowest first.
