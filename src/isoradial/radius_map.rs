@@ -541,35 +541,40 @@ fn edges_degree([outer, inner]: &[Vec<f64>; 2]) -> usize {
 mod tests {
     use super::*;
     use crate::isoradial::CurveSpec;
+    use crate::orbit::exact::Exact;
     use crate::scene::{Scene, View};
-    use crate::table::Table;
 
     #[test]
-    fn experiment() {
-        let table = Table::open("tables/standard.table").unwrap();
-        for name in [
-            "classic",
-            "face-on",
-            "edge-on",
-            "close-up",
-            "inside",
-            "photon-ring",
-        ] {
+    fn maps_of_built_in_scenes_have_no_gaps_and_few_nodes() {
+        for name in ["classic", "face-on", "close-up", "inside", "photon-ring"] {
             let scene = Scene::builtin(name).unwrap();
             let view = View::new(&scene);
-            let curves = Isoradials::new(&CurveSpec::new(&scene, &view, 1e-3), &table.lookup());
-            let start = std::time::Instant::now();
-            let map = RadiusMap::new(&curves, &table.lookup());
-            println!(
-                "{name}: {:?}, {} nodes, {:.1e}",
-                start.elapsed(),
-                map.nodes(),
-                map.error()
+            let spec = CurveSpec::new(&scene, &view, scene.tolerance());
+            let curves = Isoradials::new(&spec, &Exact);
+            let map = RadiusMap::new(&curves, &Exact);
+            assert!(
+                map.error() > 0.0 && map.error() <= 2.0 * TOLERANCE,
+                "{name}"
             );
-            for (q, pieces) in map.quarters.iter().enumerate() {
-                for p in pieces {
-                    let d: Vec<_> = p.sections.iter().map(|s| (s.x.from, s.degrees)).collect();
-                    println!("  {q} {} {:.3?}", p.order, d);
+            assert!(
+                (100..2500).contains(&map.nodes()),
+                "{name}: {}",
+                map.nodes()
+            );
+            for quarter in 0..2 {
+                for piece in curves.quarter(quarter) {
+                    let (from, to) = piece.range();
+                    for i in 0..=50 {
+                        let x = from + (to - from) * f64::from(i) / 50.0;
+                        let place = PlaneMeeting { quarter, x };
+                        let section = map.section(piece.order, place);
+                        let u = section.map(|section| section.column(x).u(0.5));
+                        let (outer, inner) = curves.u_edges();
+                        assert!(
+                            u.is_some_and(|u| u > outer && u < inner),
+                            "{name} {x} {u:?}"
+                        );
+                    }
                 }
             }
         }
