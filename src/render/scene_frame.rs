@@ -79,6 +79,15 @@ impl<A: SweptAngles> SceneFrame<'_, A> {
     ) -> Result<(), RenderError> {
         let (view, curves, threads) = (self.view, self.curves, self.threads);
         let smooth = self.scene.antialias();
+        let target = match target {
+            Target::Grey8(samples, stride) => {
+                return workspace.draw(view, curves, smooth, threads, samples, stride);
+            }
+            Target::Grey16(samples, stride) => {
+                return workspace.draw(view, curves, smooth, threads, samples, stride);
+            }
+            shaded => shaded,
+        };
         let none = RadiusMap::default();
         let gaps = |order, h, meets| curves.u_in_gap(order, h, meets, self.angles);
         let shader = Shader::new(view, curves, self.map.unwrap_or(&none), &gaps);
@@ -91,12 +100,7 @@ impl<A: SweptAngles> SceneFrame<'_, A> {
         let width = view.width() as usize;
         let rows = rows_of_band(width);
         match target {
-            Target::Grey8(samples, stride) => {
-                return workspace.draw(view, curves, smooth, threads, samples, stride);
-            }
-            Target::Grey16(samples, stride) => {
-                return workspace.draw(view, curves, smooth, threads, samples, stride);
-            }
+            Target::Grey8(..) | Target::Grey16(..) => {}
             Target::Rgb8(samples, stride) => {
                 let ink = Rgb8(self.colours()?, averaging);
                 let bands = Rows::bands(samples, stride, 3 * width, rows);
