@@ -10,8 +10,9 @@ use super::super::progress::Report;
 use super::super::stdio::print;
 use super::super::threads::start_threads;
 use super::args::RenderArgs;
-use super::{draw, options};
+use super::{draw, form, options};
 use crate::isoradial::{Isoradials, RadiusMap};
+use crate::render::Form;
 use crate::render::needs::{Candidate, Needs};
 use crate::scene::{Animation, ImageSize, Scene};
 
@@ -31,6 +32,7 @@ pub(super) fn run(
         ));
     }
     let scene = animation.frame(frames.iter().next().unwrap_or(1))?;
+    let form = form::expected(args, animation)?;
     let needs = draw::needs(&scene);
     let needed = needs.table().map(|candidate| candidate.name);
     let checked = args.method.check(needed)?;
@@ -38,9 +40,8 @@ pub(super) fn run(
     let method = options::method(args, checked, report)?;
     let table = args.method.table_path(needed);
     let curves = draw::curves(&needs, &method);
-    let needs_map = scene.light().is_some() || !scene.layers().is_empty();
-    let map = needs_map.then(|| draw::map(&curves, &method));
-    let drawn = (&curves, map.as_ref());
+    let map = form.needs_map().then(|| draw::map(&curves, &method));
+    let drawn = (&curves, map.as_ref(), form);
     print(&text(&scene, &needs, drawn, &method, table.as_deref()))?;
     Ok(())
 }
@@ -49,7 +50,7 @@ pub(super) fn run(
 fn text(
     scene: &Scene,
     needs: &Needs,
-    (curves, map): (&Isoradials, Option<&RadiusMap>),
+    (curves, map, form): (&Isoradials, Option<&RadiusMap>, Form),
     method: &Method,
     path: Option<&Path>,
 ) -> String {
@@ -110,7 +111,7 @@ fn text(
     }
 
     let (bytes, nodes) = (curves.bytes(), curves.nodes());
-    let pixels = u64::from(width) * u64::from(height);
+    let pixels = u64::from(width) * u64::from(height) * form.bytes() as u64;
     line(
         "bytes",
         format!(
@@ -142,7 +143,7 @@ fn text(
     let light = if map.is_some() {
         "spin, thickness and sky are not modelled"
     } else {
-        "no map of the radius, since no light and no data are asked for; spin, thickness and sky are not modelled"
+        "no map of the radius, since the picture shows only where the disk is; spin, thickness and sky are not modelled"
     };
     line("not needed", format!("a ray for each pixel; {light}"));
     text

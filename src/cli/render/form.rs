@@ -65,6 +65,19 @@ pub(super) fn checked(
     })
 }
 
+/// The pixels of the frames before their file is known: layers that are asked for go into a file that holds them.
+///
+/// # Errors
+/// Those of [`checked`].
+pub(super) fn expected(args: &RenderArgs, animation: &Animation) -> anyhow::Result<Form> {
+    let default = if animation.layers().is_empty() {
+        Format::Png
+    } else {
+        Format::Exr
+    };
+    checked(args, animation, args.format.unwrap_or(default))
+}
+
 /// The layers of a file: those that the scene names, or else coverage, and colour where there is light. An OpenEXR file
 /// with colour has alpha too.
 fn with_defaults(layers: LayerSet, format: Format, is_lit: bool) -> LayerSet {

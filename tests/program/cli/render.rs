@@ -37,6 +37,32 @@ fn render_works_at_once_in_an_empty_folder_and_leaves_nothing_else() {
     assert_eq!(fs::read(here.join("classic.png")).unwrap(), before);
 }
 
+/// `--explain` tells of the map and of the pixels' bytes in the form that the file holds.
+#[test]
+fn the_map_is_told_of_where_the_output_needs_it() {
+    let folder = with_draft();
+    let here = folder.path();
+    let pixels = 96 * 54;
+    for (options, bytes, has_map) in [
+        (&["classic"][..], 1, false),
+        (&["lit"], 3, true),
+        (&["lit", "--bits", "16"], 6, true),
+        (&["lit", "--layers", "coverage,order"], 8, false),
+        (&["classic", "--layers", "radius"], 4, true),
+        (&["classic", "--format", "exr"], 4, false),
+        (&["lit", "--format", "exr"], 20, true),
+    ] {
+        let explain = ["render", "--explain", "--table", "a.table", "--size", SMALL];
+        let told = printed(here, &[&explain[..], options].concat());
+        let pixels = format!(" {} of pixels\n", bytes * pixels);
+        assert!(told.contains(&pixels), "no {pixels} in:\n{told}");
+        assert_eq!(told.contains("\nmap         of the radius: "), has_map);
+        assert_eq!(told.contains("no map of the radius"), !has_map);
+        assert!(!told.contains("colour"), "{told}");
+    }
+    assert_eq!(listing(here), ["a.table"]);
+}
+
 /// The picture decides the table: the draft table for a small picture, none if even the fine table is too coarse.
 /// `--explain` says which and why, and draws nothing.
 #[test]
