@@ -1,5 +1,5 @@
-//! The chart's verdict in one sentence: how long the table takes on this machine for frames that are right, and how long
-//! RK4 takes.
+//! The chart's verdict in one sentence: how long the table takes on this machine for frames that are right, and how
+//! long RK4 takes.
 
 use super::data::ChartData;
 use super::light::LitFrame;

@@ -14,10 +14,10 @@
 //! * `b² − λ² = r0² (t_a² + (n·p̂)² t_b²)/(|d|² (1 − u0))`, a sum, since `n_a² + (n·p̂)² = 1`. Its root is the light's
 //!   angular momentum across n.
 //!
-//! In the disk's plane, â's trace c (the direction of the camera's foot) and −b̂ are a right-handed basis about n. There
-//! the crossing's direction `p̂ cos φ + t̂ sin φ`, φ = φ₁ + kπ, has the components `∓(t_a, (n·p̂) t_b)` over the same root:
-//! no angle is needed. The upper sign is for the side of the disk to which n points, and both change from one order to
-//! the next.
+//! In the disk's plane, â's trace c (the direction of the camera's foot) and −b̂ are a right-handed basis about n.
+//! There the crossing's direction `p̂ cos φ + t̂ sin φ`, φ = φ₁ + kπ, has the components `∓(t_a, (n·p̂) t_b)` over the
+//! same root: no angle is needed. The upper sign is for the side of the disk to which n points, and both change from
+//! one order to the next.
 
 use super::sight::Sight;
 use crate::scene::{PixelRay, View};
@@ -28,8 +28,9 @@ const ALONG_X: f64 = 1e-6;
 
 /// Returns the ratio of observed to emitted frequency, `g = √(1 − 3u/2)/(√(1 − u0) (1 − Ωλ))`, `Ω = √(u³/2)`.
 ///
-/// The light comes from matter on a circular orbit at inverse radius `u ≤ 1/3` and has the angular momentum `lambda` (in
-/// Schwarzschild radii, per unit of energy) about the orbit's axis, positive where both go around in the same sense.
+/// The light comes from matter on a circular orbit at inverse radius `u ≤ 1/3` and has the angular momentum `lambda`
+/// (in Schwarzschild radii, per unit of energy) about the orbit's axis, positive where both go around in the same
+/// sense.
 /// `clock_rate` is √(1 − u0) of the observer at rest, 1 far away.
 #[inline]
 pub fn redshift(u: f64, clock_rate: f64, lambda: f64) -> f64 {

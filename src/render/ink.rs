@@ -198,8 +198,8 @@ fn evaluate_amplitude(shader: &Shader<'_>, u: f64, ray: &PlaceRay, values: &mut 
     values[0] = shader.amplitude(u, shader.lambda(ray));
 }
 
-/// The last coefficients of an amplitude for colours of 8 bits. The amplitude itself is off by a fifth of it or less: by
-/// 1/20 of a code where light rises with its tenth power.
+/// The last coefficients of an amplitude for colours of 8 bits. The amplitude itself is off by a fifth of it or less:
+/// by 1/20 of a code where light rises with its tenth power.
 const COLOUR_TOLERANCE: f64 = 1e-4;
 
 /// The most places a side of a pixel over which its light is averaged.

@@ -203,9 +203,9 @@ impl<A: SweptAngles> Renderer<A> {
 }
 
 impl<A: SweptAngles> Renderer<A> {
-    /// Draws frames of an animation in a form, side by side on all threads of the current rayon pool where there are enough. They
-    /// are begun in the order of `numbers`. `done` gets each frame as it is finished, in any order and from several
-    /// threads at once.
+    /// Draws frames of an animation in a form, side by side on all threads of the current rayon pool where there are
+    /// enough. They are begun in the order of `numbers`. `done` gets each frame as it is finished, in any order and
+    /// from several threads at once.
     ///
     /// A frame's bytes depend on the animation, the table and its number alone: not on which other frames are drawn.
     ///

@@ -6,9 +6,10 @@
 //! shading: from redshift and flux to the bytes of the picture.
 //!
 //! Measured are the relative error of the redshift and the error of the luminance that follows from radius and redshift
-//! at a pixel's centre (the hottest ring at rest has 1), over the pixels that see the disk in the right order (`exact_sights.rs`). The pixels that do not are counted
-//! as failures. The time of a frame from the map includes the curves and the map where the radius is new. The times of
-//! the other methods are those of an evenly spread sample of pixels, scaled to the frame.
+//! at a pixel's centre (the hottest ring at rest has 1), over the pixels that see the disk in the right order
+//! (`exact_sights.rs`). The pixels that do not are counted as failures. The time of a frame from the map includes the
+//! curves and the map where the radius is new. The times of the other methods are those of an evenly spread sample of
+//! pixels, scaled to the frame.
 
 mod exact_sights;
 mod lit_methods;

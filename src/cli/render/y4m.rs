@@ -2,9 +2,9 @@
 //!
 //! The header says the size, the frame rate, square pixels, and how pixels are coded. Films have 8 bits a sample,
 //! 4:2:0, limited range: black is Y = 16 and white Y = 235, with U = V = 128 where there is no colour. The chroma
-//! samples lie at the left of two pixels and between two rows (`C420mpeg2`), where MPEG-2 and H.264 put them unless told
-//! otherwise. R, G and B become Y, U and V by the matrix of BT.709; the format has no tag for that. A mask's linear
-//! coverage is its luma. Grey films have full range and no chroma (`Cmono`, `XCOLORRANGE=FULL`).
+//! samples lie at the left of two pixels and between two rows (`C420mpeg2`), where MPEG-2 and H.264 put them unless
+//! told otherwise. R, G and B become Y, U and V by the matrix of BT.709; the format has no tag for that. A mask's
+//! linear coverage is its luma. Grey films have full range and no chroma (`Cmono`, `XCOLORRANGE=FULL`).
 
 use crate::render::Pixels;
 use crate::scene::ImageSize;

@@ -13,8 +13,9 @@ impl FixedStep {
             .is_some()
     }
 
-    /// Returns where a ray meets the disk first: the order of the image, and u. That is where its u lies between `u_outer` and `u_inner` at any of the orbit
-    /// angles `first_crossing + kπ`, k = 0, 1, 2 …, where it passes the disk's plane. The order counts the crossings before.
+    /// Returns where a ray meets the disk first: the order of the image, and u. That is where its u lies between
+    /// `u_outer` and `u_inner` at any of the orbit angles `first_crossing + kπ`, k = 0, 1, 2 …, where it passes the
+    /// disk's plane. The order counts the crossings before.
     ///
     /// `first_crossing` is in [0, π). At 0 the ray starts in the plane, which is not a crossing, and its first crossing
     /// is at π. Between two crossings the steps are equal, of `h` or a little less, so that each crossing is the end of

@@ -80,8 +80,9 @@ pub struct DrawnFrame<'a> {
     pub pixels: Result<(Pixels<'a>, FrameReport), FrameError>,
 }
 
-/// Draws frames in a form, on all threads of the current rayon pool. Frames are begun in order. Each is passed to `done` as soon
-/// as it is finished, so in any order and from several threads at once. Frames that are not `wanted` are skipped.
+/// Draws frames in a form, on all threads of the current rayon pool. Frames are begun in order. Each is passed to
+/// `done` as soon as it is finished, so in any order and from several threads at once. Frames that are not `wanted` are
+/// skipped.
 ///
 /// It takes the memory of one frame, or of one a thread if they are drawn side by side.
 ///
