@@ -5,10 +5,10 @@ use super::tone::DisplayTransform;
 
 /// The 8-bit colours of one light on one display, by the amplitude y.
 ///
-/// 20,000 entries (80 kB) stand at equal distances on an axis that is nearly ln y: the bits of y as an integer. They
-/// reach from the amplitude below which all is black to the one above which nothing changes, so that their distance
-/// follows from how fast the light rises. A code is within 0.6 of the exact one, [`DisplayTransform::encode`] times
-/// 255; 0.5 of this is the rounding.
+/// 20,000 to 40,000 entries (80 to 160 kB) stand at equal distances on an axis that is nearly ln y: the bits of y as an
+/// integer, shifted. They reach from the amplitude below which all is black to the one above which nothing changes, so
+/// that their distance follows from how fast the light rises. A code is within 0.6 of the exact one,
+/// [`DisplayTransform::encode`] times 255; 0.5 of this is the rounding.
 ///
 /// There is one exception, without a tone ([`Tone::None`]): where light of 1900 K is overexposed five times or more,
 /// its blue enters the gamut there and rises by more than a code within an entry.
@@ -18,15 +18,15 @@ use super::tone::DisplayTransform;
 pub struct Palette {
     /// The bits of the first amplitude.
     first: i32,
-    /// The entries for each step of the bits, times 2³².
-    scale: u64,
+    /// The bits that do not tell the entry.
+    shift: u32,
     entries: Vec<[u8; 4]>,
     /// The colour of all larger amplitudes.
     brightest: [u8; 4],
 }
 
 impl Palette {
-    const ENTRIES: usize = 20_000;
+    const LEAST_ENTRIES: u32 = 20_000;
     /// So many entries are interpolated where they differ by less than 0.4 codes: most of them, where it is dark, where
     /// it is nearly white, and where the codes rise slowly between.
     const BLOCK: usize = 8;
@@ -39,11 +39,13 @@ impl Palette {
         let brightest = codes(end);
         let seen = first_that(light.first().to_bits(), end, |bits| codes(bits) != [0; 3]);
         let last = end - first_that(0, end - seen, |below| codes(end - below) != brightest);
-        // One entry before the first colour that is seen, and none beyond the last index.
-        let step = (last - seen) / (Self::ENTRIES as u32 - 2) + 1;
+        let shift = ((last - seen) / Self::LEAST_ENTRIES).max(1).ilog2();
+        let step = 1 << shift;
+        // One entry before the first colour that is seen.
         let first = seen - step;
+        let count = ((last - first) >> shift) as usize + 1;
         let entry = |place: usize| display.values(rgb(first + place as u32 * step + step / 2));
-        let mut entries = vec![[0; 4]; Self::ENTRIES];
+        let mut entries = vec![[0; 4]; count.next_multiple_of(Self::BLOCK)];
         let mut start = entry(0);
         for (block, colours) in entries
             .as_chunks_mut::<{ Self::BLOCK }>()
@@ -68,22 +70,24 @@ impl Palette {
         }
         // The first entry stands for all that is not seen.
         entries[0] = [0, 0, 0, 255];
+        entries.truncate(count);
         Self {
             first: first as i32,
-            scale: (1 << 32) / u64::from(step),
-            brightest: [brightest[0], brightest[1], brightest[2], 255],
+            shift,
             entries,
+            brightest: [brightest[0], brightest[1], brightest[2], 255],
         }
     }
 
-    /// Returns red, green, blue and 255 at the amplitude `y`; black where it is not positive. NaN gives the
-    /// colour of one of the ends.
-    #[inline]
-    pub fn rgb8(&self, y: f32) -> [u8; 4] {
+    /// Returns red, green and blue at the amplitude `y`; black where it is not positive. NaN gives the colour of one of
+    /// the ends.
+    #[inline(always)]
+    pub fn rgb8(&self, y: f32) -> [u8; 3] {
         // The bits of positive numbers rise with them, and those of negative ones are negative.
         let beyond_first = (y.to_bits() as i32).max(self.first) - self.first;
-        let place = (beyond_first as u64 * self.scale) >> 32;
-        *self.entries.get(place as usize).unwrap_or(&self.brightest)
+        let place = (beyond_first >> self.shift) as usize;
+        let [r, g, b, _] = *self.entries.get(place).unwrap_or(&self.brightest);
+        [r, g, b]
     }
 }
 
@@ -166,11 +170,11 @@ mod tests {
         }));
         let palette = Palette::new(&light, &DisplayTransform::new(0.0, Tone::Neutral));
         for y in [f32::NEG_INFINITY, -1.0, -0.0, 0.0, 1e-45, 1e-9] {
-            assert_eq!(palette.rgb8(y), [0, 0, 0, 255]);
+            assert_eq!(palette.rgb8(y), [0; 3]);
         }
         for y in [1e12, f32::MAX, f32::INFINITY] {
-            assert_eq!(palette.rgb8(y), [255; 4]);
+            assert_eq!(palette.rgb8(y), [255; 3]);
         }
-        assert_eq!(palette.rgb8(f32::NAN)[3], 255);
+        assert!([[0; 3], [255; 3]].contains(&palette.rgb8(f32::NAN)));
     }
 }

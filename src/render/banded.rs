@@ -28,6 +28,15 @@ pub(super) struct BandedOutline {
     sorted: Vec<u32>,
     /// Where each band's arcs begin in that list, and where the last band's end.
     firsts: Vec<usize>,
+    smooth: bool,
+    /// The distance from an arc within which a pixel's centre is doubtful.
+    doubt: f64,
+    /// The winding number along the picture's left side, without the path's crossings of it.
+    left: i32,
+    width: usize,
+    height: usize,
+    /// Rows of a band.
+    rows: usize,
 }
 
 /// What a thread draws a band with.
@@ -43,24 +52,9 @@ pub(super) struct BandScratch {
     rows: usize,
 }
 
-/// A sorted outline, ready to be drawn band by band.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct DrawnOutline<'a> {
-    outline: &'a BandedOutline,
-    smooth: bool,
-    /// The distance from an arc within which a pixel's centre is doubtful.
-    doubt: f64,
-    /// The winding number along the picture's left side, without the path's crossings of it.
-    left: i32,
-    width: usize,
-    height: usize,
-    /// Rows of a band.
-    rows: usize,
-}
-
 impl BandedOutline {
-    /// Draws the outline of what `weight` tells in a view: see [`OutlinePath::draw`].
-    pub(super) fn draw(
+    /// Traces the outline of what `weight` tells in a view: see [`OutlinePath::draw`].
+    pub(super) fn trace(
         &mut self,
         half: &mut OutlinePath,
         projection: &Projection<'_>,
@@ -69,6 +63,9 @@ impl BandedOutline {
         on_all_threads: bool,
     ) {
         let tolerance = if smooth { SMOOTH } else { HARD };
+        let rounding = projection.curves.error().rounding;
+        self.doubt = 2.0 * (tolerance + rounding) + 2.0 / ONE as f64;
+        self.smooth = smooth;
         self.path
             .draw(half, projection, tolerance, weight, on_all_threads);
     }
@@ -78,8 +75,13 @@ impl BandedOutline {
         curves.error().rounding <= COARSE && self.path.is_complete()
     }
 
-    /// Sorts the path's arcs into bands: counts those of each band, and places them from the last to the first.
-    pub(super) fn sort(&mut self, height: usize, rows: usize) {
+    /// Sorts the path's arcs into bands of `rows` rows: counts those of each band, and places them from the last to the
+    /// first. `sees` tells what the outline encloses, at one place.
+    pub(super) fn sort(&mut self, view: &View, rows: usize, sees: impl Fn((f64, f64)) -> bool) {
+        (self.width, self.height) = (view.width() as usize, view.height() as usize);
+        self.rows = rows;
+        self.left = left(&self.path, view, sees);
+        let height = self.height;
         let band = |row: f64| (row.max(0.0) as usize).min(height - 1) / rows;
         let bands_of = |arc: &EdgeArc| {
             let (first, last) = arc.rows();
@@ -108,40 +110,16 @@ impl BandedOutline {
         }
     }
 
-    /// Returns the outline ready for bands of `rows` rows. `sees` tells what it encloses, at one place.
-    pub(super) fn drawn(
-        &self,
-        view: &View,
-        curves: &Isoradials,
-        smooth: bool,
-        rows: usize,
-        sees: impl Fn((f64, f64)) -> bool,
-    ) -> DrawnOutline<'_> {
-        let tolerance = if smooth { SMOOTH } else { HARD };
-        DrawnOutline {
-            outline: self,
-            smooth,
-            doubt: 2.0 * (tolerance + curves.error().rounding) + 2.0 / ONE as f64,
-            left: left(&self.path, view, sees),
-            width: view.width() as usize,
-            height: view.height() as usize,
-            rows,
-        }
-    }
-}
-
-impl DrawnOutline<'_> {
     /// Draws a band's arcs into cells. Returns the band's first row.
     pub(super) fn draw(&self, band: usize, scratch: &mut BandScratch) -> usize {
-        let outline = self.outline;
         let top = band * self.rows;
         let rows = self.rows.min(self.height - top);
         scratch.rows = rows;
         let cells = &mut scratch.cells;
         cells.set(self.width, top, rows);
         scratch.doubtful.clear();
-        for &arc in &outline.sorted[outline.firsts[band]..outline.firsts[band + 1]] {
-            let arc = &outline.path.arcs[arc as usize];
+        for &arc in &self.sorted[self.firsts[band]..self.firsts[band + 1]] {
+            let arc = &self.path.arcs[arc as usize];
             if self.smooth {
                 cells.cover(arc);
             } else {
@@ -150,7 +128,7 @@ impl DrawnOutline<'_> {
         }
         scratch.left = self.left;
         scratch.left_crossings.clear();
-        for crossing in &outline.path.left_crossings {
+        for crossing in &self.path.left_crossings {
             let first = if self.smooth {
                 cells.cover_below(crossing.y, crossing.weight)
             } else {

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use rayon::prelude::*;
 
 use super::WHITE;
-use super::banded::{BandScratch, BandedOutline, DrawnOutline};
+use super::banded::{BandScratch, BandedOutline};
 use super::cells::{Cells, ONE};
 use super::centre::{fill_every_pixel, front};
 use super::error::{RenderError, check_buffer};
@@ -53,7 +53,7 @@ pub struct Workspace {
 struct Bands<'a> {
     view: &'a View,
     curves: &'a Isoradials,
-    drawn: DrawnOutline<'a>,
+    outline: &'a BandedOutline,
     stride: usize,
 }
 
@@ -82,17 +82,16 @@ impl Workspace {
         let count = threads.count();
         let rows = rows_of_band(view);
         let outline = &mut self.outline;
-        outline.draw(&mut self.half, &projection, smooth, covers, count > 1);
+        outline.trace(&mut self.half, &projection, smooth, covers, count > 1);
         if !outline.is_meaningful(curves) {
             fill_every_pixel(view, curves, &mut pixels[..needed], stride);
             return Ok(());
         }
-        outline.sort(view.height() as usize, rows);
-        let sees = |place| front(view, curves, place).is_some();
+        outline.sort(view, rows, |place| front(view, curves, place).is_some());
         let frame = Bands {
             view,
             curves,
-            drawn: outline.drawn(view, curves, smooth, rows, sees),
+            outline,
             stride,
         };
         let bands = pixels[..needed].chunks_mut(stride.saturating_mul(rows));
@@ -144,7 +143,7 @@ impl Bands<'_> {
     /// Draws a band.
     fn draw<T: MaskSample>(&self, band: usize, pixels: &mut [T], scratch: &mut BandScratch) {
         let (width, stride) = (self.view.width() as usize, self.stride);
-        let top = self.drawn.draw(band, scratch);
+        let top = self.outline.draw(band, scratch);
         scratch.rows(|cells, row, left| {
             fill_row(cells, row, left, &mut pixels[row * stride..][..width]);
         });

@@ -33,7 +33,7 @@ struct Near {
 
 /// A square of the picture, and what is near.
 pub(super) struct Mixture<'a> {
-    shader: &'a Shader<'a>,
+    pub(super) shader: &'a Shader<'a>,
     place: (f64, f64),
     /// The side of the square, in pixels.
     side: f64,

@@ -35,6 +35,7 @@ mod cover;
 pub mod coverage;
 mod cross;
 mod error;
+mod flux_spline;
 pub mod frame;
 mod ink;
 pub mod mask;

@@ -1,8 +1,10 @@
 //! Paints the pixels of a band: what one order covers wholly, and what is covered in part.
 
-use super::ink::{Ink, MOST_QUANTITIES, Part};
+use core::f64::consts::{PI, TAU};
+
+use super::ink::{Ink, Part, Quantities, Stretch};
 use super::mixture::Mixture;
-use super::patch::{Patch, PatchFit};
+use super::patch::{Axis, Misfit, Patch};
 use super::shader::Shader;
 
 /// Columns and rows of a tile: what a patch covers at most. Bands are whole rows of tiles.
@@ -25,11 +27,9 @@ pub(super) struct Partial {
 }
 
 /// Paints a band.
-pub(super) struct Painter<'a, I> {
+pub(super) struct Painter<'a, I, const N: usize> {
     pub(super) shader: &'a Shader<'a>,
     pub(super) ink: &'a I,
-    pub(super) fit: &'a PatchFit,
-    pub(super) smooth: bool,
     /// The band's first row in the picture.
     pub(super) top: usize,
 }
@@ -68,22 +68,60 @@ impl Rectangle {
         (count, bounds)
     }
 
-    /// Its halves, across its longer side.
-    fn halves(self) -> [Self; 2] {
-        let halves =
-            |(from, to): (usize, usize)| [(from, from.midpoint(to)), (from.midpoint(to), to)];
+    /// Its parts, cut along an axis into at most so many: at least two, where it is more than a pixel.
+    fn parts(self, axis: Axis, count: usize) -> impl Iterator<Item = Self> {
+        let (columns, rows) = (self.columns.1 - self.columns.0, self.rows.1 - self.rows.0);
+        let axis = match axis {
+            Axis::X if columns > 1 => Axis::X,
+            Axis::Y if rows > 1 => Axis::Y,
+            _ if columns > rows => Axis::X,
+            _ => Axis::Y,
+        };
+        let (first, length) = match axis {
+            Axis::X => (self.columns.0, columns),
+            Axis::Y => (self.rows.0, rows),
+        };
+        let count = count.min(length);
+        (0..count).map(move |i| {
+            let part = (first + i * length / count, first + (i + 1) * length / count);
+            match axis {
+                Axis::X => Self {
+                    columns: part,
+                    ..self
+                },
+                Axis::Y => Self { rows: part, ..self },
+            }
+        })
+    }
+
+    /// The axis along which it is longer.
+    fn longer(self) -> Axis {
         if self.columns.1 - self.columns.0 >= self.rows.1 - self.rows.0 {
-            halves(self.columns).map(|columns| Self { columns, ..self })
+            Axis::X
         } else {
-            halves(self.rows).map(|rows| Self { rows, ..self })
+            Axis::Y
         }
     }
 }
 
-impl<I: Ink> Painter<'_, I> {
+impl<I: Ink<N>, const N: usize> Painter<'_, I, N> {
     /// y of the centres of a row of the band.
     fn y(&self, row: usize) -> f64 {
         (self.top + row) as f64 + 0.5
+    }
+
+    /// Clears `rows` rows but for runs.
+    pub(super) fn clear_but(&self, rows: usize, runs: &[Run], memory: &mut I::Band<'_>) {
+        let width = self.shader.view.width() as usize;
+        let mut runs = runs.iter().peekable();
+        for row in 0..rows {
+            let mut from = 0;
+            while let Some(run) = runs.next_if(|run| run.row as usize == row) {
+                self.ink.clear(memory, row, (from, run.from as usize));
+                from = run.to as usize;
+            }
+            self.ink.clear(memory, row, (from, width));
+        }
     }
 
     /// Paints the pixels that one order covers wholly: runs of `rows` rows, by rows.
@@ -92,10 +130,10 @@ impl<I: Ink> Painter<'_, I> {
         order: u32,
         rows: usize,
         runs: &[Run],
-        patch: &mut Patch,
         memory: &mut I::Band<'_>,
     ) {
         let width = self.shader.view.width() as usize;
+        let mut patch = Patch::new();
         let mut rest = runs;
         for first in (0..rows).step_by(TILE.1) {
             let last = (first + TILE.1).min(rows);
@@ -110,18 +148,18 @@ impl<I: Ink> Painter<'_, I> {
                     columns: (column, (column + TILE.0).min(width)),
                     rows: (first, last),
                 };
-                self.paint_tile(order, runs, tile, patch, memory);
+                self.paint_tile(order, runs, tile, &mut patch, memory);
             }
         }
     }
 
-    /// Paints the runs within a rectangle: from a patch, or from patches of its halves, or pixel by pixel.
+    /// Paints the runs within a rectangle: from a patch, or from patches of its parts, or pixel by pixel.
     fn paint_tile(
         &self,
         order: u32,
         runs: &[Run],
         tile: Rectangle,
-        patch: &mut Patch,
+        patch: &mut Patch<N>,
         memory: &mut I::Band<'_>,
     ) {
         let (count, bounds) = tile.shrunk(runs);
@@ -129,63 +167,69 @@ impl<I: Ink> Painter<'_, I> {
             return;
         }
         let needs_patch = self.ink.quantities() > 0;
-        if needs_patch && count <= self.fit.nodes() {
-            self.paint_pixels(order, runs, bounds, memory);
-        } else if !needs_patch || self.fits(order, bounds, patch) {
-            for (row, columns) in bounds.clip(runs) {
-                let y = self.y(row);
-                self.ink
-                    .put_row(memory, self.shader, order, row, columns, patch, y);
+        if needs_patch && count <= N * N {
+            for (row, (from, to)) in bounds.clip(runs) {
+                for column in from..to {
+                    let place = (column as f64 + 0.5, self.y(row));
+                    let (shader, pixel) = (self.shader, (row, column));
+                    self.ink.put_pixel(memory, shader, order, pixel, place);
+                }
             }
+            return;
+        }
+        let fit = if needs_patch {
+            self.fit(order, bounds, patch)
         } else {
-            for half in bounds.halves() {
-                self.paint_tile(order, runs, half, patch, memory);
+            Ok(())
+        };
+        let (axis, parts) = match fit {
+            Ok(()) => {
+                for (row, (from, to)) in bounds.clip(runs) {
+                    let stretch = Stretch {
+                        order,
+                        row,
+                        from,
+                        to,
+                        y: self.y(row),
+                    };
+                    self.ink.put_stretch(memory, self.shader, stretch, patch);
+                }
+                return;
             }
+            Err(Misfit::TooLong(axis, parts)) => (axis, parts),
+            Err(Misfit::NoValue) => (bounds.longer(), 2),
+        };
+        for part in bounds.parts(axis, parts) {
+            self.paint_tile(order, runs, part, patch, memory);
         }
     }
 
-    /// Fits a patch to the pixels of a rectangle. Returns whether it is as good as the ink asks.
-    fn fits(&self, order: u32, bounds: Rectangle, patch: &mut Patch) -> bool {
+    /// Fits a patch to the pixels of a rectangle.
+    fn fit(&self, order: u32, bounds: Rectangle, patch: &mut Patch<N>) -> Result<(), Misfit> {
         let (shader, ink) = (self.shader, self.ink);
         let centre = |column: usize, row: usize| (column as f64 + 0.5, self.y(row));
         let corners = (
             centre(bounds.columns.0, bounds.rows.0),
             centre(bounds.columns.1 - 1, bounds.rows.1 - 1),
         );
+        let angle = ink.angle();
         let mut first = None;
-        let evaluate = |place, values: &mut [f64]| {
+        let evaluate = |place, values: &mut Quantities| {
             let ray = shader.ray(place);
             let Some(u) = shader.u(order, &ray) else {
                 return false;
             };
             ink.evaluate(shader, order, u, &ray, values);
-            let first = *first.get_or_insert_with(|| ink.angle(values));
-            ink.unwrap(values, first);
+            if let Some(angle) = angle {
+                let first = *first.get_or_insert(values[angle]);
+                values[angle] = continued(values[angle], first);
+            }
             true
         };
-        self.fit
-            .fit(patch, corners, ink.quantities(), ink.tolerance(), evaluate)
-    }
-
-    /// Paints the runs within a rectangle pixel by pixel.
-    fn paint_pixels(&self, order: u32, runs: &[Run], bounds: Rectangle, memory: &mut I::Band<'_>) {
-        let (shader, ink) = (self.shader, self.ink);
-        let mut values = [0.0; MOST_QUANTITIES];
-        for (row, (from, to)) in bounds.clip(runs) {
-            for column in from..to {
-                let place = (column as f64 + 0.5, self.y(row));
-                if self.smooth && ink.averages() {
-                    let mixture = Mixture::new(shader, place);
-                    let whole = [Part { order, share: 1.0 }];
-                    ink.put_mixture(memory, shader, row, column, &whole, &mixture);
-                    continue;
-                }
-                let ray = shader.ray(place);
-                let u = shader.u_on_disk(order, &ray);
-                ink.evaluate(shader, order, u, &ray, &mut values);
-                ink.put(memory, shader, order, (row, column), &ray, &values);
-            }
-        }
+        let (quantities, tolerance) = (ink.quantities(), ink.tolerance());
+        self.ink
+            .fit()
+            .fit(patch, corners, quantities, tolerance, evaluate)
     }
 
     /// Paints the pixels that are covered in part. `parts` is memory.
@@ -201,8 +245,19 @@ impl<I: Ink> Painter<'_, I> {
             parts.extend(pixel.iter().map(|partial| partial.part));
             let (row, column) = (pixel[0].row as usize, pixel[0].column as usize);
             let mixture = Mixture::new(self.shader, (column as f64 + 0.5, self.y(row)));
-            self.ink
-                .put_mixture(memory, self.shader, row, column, parts, &mixture);
+            self.ink.put_mixture(memory, (row, column), parts, &mixture);
         }
+    }
+}
+
+/// An angle, a turn more or less, within half a turn of another one.
+fn continued(angle: f64, other: f64) -> f64 {
+    let turn = angle - other;
+    if turn > PI {
+        angle - TAU
+    } else if turn < -PI {
+        angle + TAU
+    } else {
+        angle
     }
 }

@@ -7,240 +7,296 @@
 use super::ink::MOST_QUANTITIES;
 use crate::isoradial::Chebyshev;
 
-/// Fits polynomials of one degree in each coordinate.
+/// Numbers at the nodes of a rectangle, row by row; or the factors of products of powers, by the power of y.
+type Square<const N: usize> = [[f64; N]; N];
+
+/// Fits polynomials of degree `N − 1` in each coordinate. N is odd.
 #[derive(Debug)]
-pub(super) struct PatchFit {
-    count: usize,
+pub(super) struct PatchFit<const N: usize> {
     /// Places of the nodes, from 1 to −1.
-    nodes: Vec<f64>,
-    /// Row by row: the powers of the polynomial through values at the nodes.
-    powers: Vec<f64>,
-    /// The last two coefficients of Chebyshev's polynomials.
-    last: [Vec<f64>; 2],
+    nodes: [f64; N],
+    /// The powers of the polynomial through values at the nodes: for each node, its factor in each power.
+    powers: Square<N>,
+    /// The factors of the last two coefficients of Chebyshev's polynomials.
+    last: [[f64; N]; 2],
 }
 
 /// Polynomials of several quantities over a rectangle.
-#[derive(Debug, Default)]
-pub(super) struct Patch {
+#[derive(Debug)]
+pub(super) struct Patch<const N: usize> {
     centre: (f64, f64),
     per_pixel: (f64, f64),
-    count: usize,
-    /// For each quantity, for each power of y, the lowest first, the powers of x.
-    coefficients: Vec<f64>,
-    values: Vec<f64>,
-    along_x: Vec<f64>,
-    /// How far each node is from the one before, of the half width.
-    nodes_apart: Vec<f64>,
+    values: [Square<N>; MOST_QUANTITIES],
+    coefficients: [Square<N>; MOST_QUANTITIES],
     steepness: f64,
 }
 
-/// The most powers of a patch in x.
-pub(super) const MOST_POWERS: usize = 10;
+/// A side of a rectangle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Axis {
+    X,
+    Y,
+}
 
-impl PatchFit {
-    pub(super) fn new(degree: usize) -> Self {
-        let count = degree + 1;
-        let chebyshev = Chebyshev::new(degree);
-        let mut powers = vec![0.0; count * count];
-        let mut last = [vec![0.0; count], vec![0.0; count]];
-        for node in 0..count {
-            let mut unit = vec![0.0; count];
+/// Why a fit is not good enough.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Misfit {
+    /// Some node has no value.
+    NoValue,
+    /// Along this axis the rectangle has to be cut into so many parts.
+    TooLong(Axis, usize),
+}
+
+/// A rectangle is cut into no more parts at once.
+const MOST_PARTS: usize = 8;
+
+impl<const N: usize> PatchFit<N> {
+    pub(super) fn new() -> Self {
+        let chebyshev = Chebyshev::new(N - 1);
+        let mut fit = Self {
+            nodes: [0.0; N],
+            powers: [[0.0; N]; N],
+            last: [[0.0; N]; 2],
+        };
+        for (node, place) in chebyshev.nodes().enumerate() {
+            let mut unit = [0.0; N];
             unit[node] = 1.0;
             let coefficients = chebyshev.coefficients(&unit);
-            last[0][node] = coefficients[degree];
-            last[1][node] = coefficients[degree - 1];
-            for (power, value) in Chebyshev::powers(&coefficients).into_iter().enumerate() {
-                powers[power * count + node] = value;
-            }
+            fit.nodes[node] = place;
+            fit.last[0][node] = coefficients[N - 1];
+            fit.last[1][node] = coefficients[N - 2];
+            fit.powers[node].copy_from_slice(&Chebyshev::powers(&coefficients));
         }
-        Self {
-            count,
-            nodes: chebyshev.nodes().collect(),
-            powers,
-            last,
-        }
-    }
-
-    /// How many nodes a patch has.
-    pub(super) fn nodes(&self) -> usize {
-        self.count * self.count
+        fit
     }
 
     /// Fits `quantities` quantities between two corners of a rectangle. `evaluate` gives them at a place; it returns
-    /// `false` where it cannot. Each is right to about `tolerance` times its greatest size. Returns whether it is so.
+    /// `false` where it cannot.
+    ///
+    /// # Errors
+    /// A [`Misfit`] unless each quantity is right to about `tolerance` times its greatest size.
     pub(super) fn fit(
         &self,
-        patch: &mut Patch,
+        patch: &mut Patch<N>,
         (from, to): ((f64, f64), (f64, f64)),
         quantities: usize,
         tolerance: f64,
-        mut evaluate: impl FnMut((f64, f64), &mut [f64]) -> bool,
-    ) -> bool {
-        let count = self.count;
+        mut evaluate: impl FnMut((f64, f64), &mut [f64; MOST_QUANTITIES]) -> bool,
+    ) -> Result<(), Misfit> {
         let half = |from: f64, to: f64| (0.5 * (to - from)).max(0.5);
         let (half_x, half_y) = (half(from.0, to.0), half(from.1, to.1));
         patch.centre = (0.5 * (from.0 + to.0), 0.5 * (from.1 + to.1));
         patch.per_pixel = (1.0 / half_x, 1.0 / half_y);
-        patch.count = count;
-        patch.values.clear();
-        patch.values.resize(quantities * count * count, 0.0);
-        let mut at = [0.0; MOST_QUANTITIES];
-        for (j, y) in self.nodes.iter().enumerate() {
-            for (i, x) in self.nodes.iter().enumerate() {
-                let place = (patch.centre.0 + half_x * x, patch.centre.1 + half_y * y);
-                if !evaluate(place, &mut at[..quantities]) {
-                    return false;
+        // The middle row first: where it is too long no other is needed.
+        for i in 0..N {
+            let j = (i + N / 2) % N;
+            let y = patch.centre.1 + half_y * self.nodes[j];
+            let mut at = [0.0; MOST_QUANTITIES];
+            for (i, node) in self.nodes.iter().enumerate() {
+                if !evaluate((patch.centre.0 + half_x * node, y), &mut at) {
+                    return Err(Misfit::NoValue);
                 }
-                for (q, value) in at[..quantities].iter().enumerate() {
-                    patch.values[(q * count + j) * count + i] = *value;
-                }
-            }
-        }
-        patch.nodes_apart.clear();
-        let apart = self.nodes.windows(2).map(|nodes| nodes[0] - nodes[1]);
-        patch
-            .nodes_apart
-            .extend(core::iter::once(f64::INFINITY).chain(apart));
-        patch.steepness = patch.measured_steepness();
-        patch.coefficients.clear();
-        patch.along_x.resize(count * count, 0.0);
-        for values in patch.values.chunks_exact(count * count) {
-            let size = values
-                .iter()
-                .fold(0.0, |size: f64, value| size.max(value.abs()));
-            let allowed = tolerance * size;
-            for k in 0..count {
-                let mut left = 0.0;
-                for (last, share) in self.last.iter().zip([1.0, 0.25]) {
-                    let (mut along_x, mut along_y) = (0.0, 0.0);
-                    for (i, factor) in last.iter().enumerate() {
-                        along_x += factor * values[k * count + i];
-                        along_y += factor * values[i * count + k];
-                    }
-                    left = f64::max(left, share * along_x.abs().max(along_y.abs()));
-                }
-                if left > allowed || left.is_nan() {
-                    return false;
+                for (values, value) in patch.values[..quantities].iter_mut().zip(at) {
+                    values[j][i] = value;
                 }
             }
-            for j in 0..count {
-                for power in 0..count {
-                    let row = &self.powers[power * count..][..count];
-                    let values = &values[j * count..][..count];
-                    patch.along_x[j * count + power] = row
+            if i == 0 {
+                let rows = patch.values[..quantities].iter().map(|values| values[j]);
+                let off = rows.fold(0.0, |off: f64, row| {
+                    let size = row
                         .iter()
-                        .zip(values)
-                        .map(|(factor, value)| factor * value)
-                        .sum();
-                }
+                        .fold(0.0, |size: f64, value| size.max(value.abs()));
+                    worst(off, share(self.left(&row), tolerance * size))
+                });
+                is_within(off, 0.0, N)?;
             }
-            for power_y in 0..count {
-                let factors = &self.powers[power_y * count..][..count];
-                for power_x in 0..count {
-                    let sum = (0..count).map(|j| factors[j] * patch.along_x[j * count + power_x]);
-                    patch.coefficients.push(sum.sum());
+        }
+        let (mut off_x, mut off_y) = (0.0, 0.0);
+        for values in &patch.values[..quantities] {
+            let size = values.as_flattened().iter();
+            let allowed = tolerance * size.fold(0.0, |size: f64, value| size.max(value.abs()));
+            let (mut left_x, mut left_y) = (0.0, 0.0);
+            for k in 0..N {
+                left_x = worst(left_x, self.left(&values[k]));
+                left_y = worst(left_y, self.left(&values.map(|row| row[k])));
+            }
+            off_x = worst(off_x, share(left_x, allowed));
+            off_y = worst(off_y, share(left_y, allowed));
+        }
+        is_within(off_x, off_y, N)?;
+        patch.steepness = patch.measured_steepness(&self.nodes, quantities - 1);
+        for (values, coefficients) in patch.values[..quantities]
+            .iter()
+            .zip(&mut patch.coefficients)
+        {
+            let along_x = values.map(|row| combined(&self.powers, row.iter()));
+            *coefficients = [[0.0; N]; N];
+            for (factors, along_x) in self.powers.iter().zip(&along_x) {
+                for (coefficients, factor) in coefficients.iter_mut().zip(factors) {
+                    for (c, x) in coefficients.iter_mut().zip(along_x) {
+                        *c += factor * x;
+                    }
                 }
             }
         }
-        true
+        Ok(())
+    }
+
+    /// What a polynomial through values at the nodes leaves out, about.
+    #[inline]
+    fn left(&self, values: &[f64; N]) -> f64 {
+        let sum = |factors: &[f64; N]| -> f64 {
+            let terms = factors
+                .iter()
+                .zip(values)
+                .map(|(factor, value)| factor * value);
+            terms.sum::<f64>().abs()
+        };
+        worst(sum(&self.last[0]), 0.25 * sum(&self.last[1]))
     }
 }
 
-/// A polynomial along a row of pixels.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct RowPolynomial {
-    powers: [f64; MOST_POWERS],
-    count: usize,
-    centre: f64,
-    per_pixel: f64,
+/// The sum of rows, each times its factor.
+#[inline]
+fn combined<'a, const N: usize>(
+    rows: &Square<N>,
+    factors: impl Iterator<Item = &'a f64>,
+) -> [f64; N] {
+    let mut sum = [0.0; N];
+    for (row, factor) in rows.iter().zip(factors) {
+        for (sum, value) in sum.iter_mut().zip(row) {
+            *sum += factor * value;
+        }
+    }
+    sum
 }
 
-impl Patch {
+/// The larger of two numbers; NaN is the largest.
+#[inline]
+fn worst(a: f64, b: f64) -> f64 {
+    if a >= b || a.is_nan() { a } else { b }
+}
+
+/// What is left as a multiple of what is allowed. Nothing is nothing.
+#[inline]
+fn share(left: f64, allowed: f64) -> f64 {
+    if left == 0.0 { 0.0 } else { left / allowed }
+}
+
+/// Checks how far off a fit is along each axis, as a multiple of what is allowed.
+///
+/// The last coefficient falls with the length to the power of the degree. That tells how many parts are enough.
+fn is_within(off_x: f64, off_y: f64, count: usize) -> Result<(), Misfit> {
+    let (axis, off) = if off_x >= off_y {
+        (Axis::X, off_x)
+    } else {
+        (Axis::Y, off_y)
+    };
+    if off <= 1.0 {
+        return Ok(());
+    }
+    let degree = (count - 1) as u32;
+    let is_enough = |parts: &usize| (parts.pow(degree) as f64) >= off;
+    let parts = (2..MOST_PARTS).find(is_enough).unwrap_or(MOST_PARTS);
+    Err(Misfit::TooLong(axis, parts))
+}
+
+impl<const N: usize> Patch<N> {
+    pub(super) fn new() -> Self {
+        Self {
+            centre: (0.0, 0.0),
+            per_pixel: (1.0, 1.0),
+            values: [[[0.0; N]; N]; MOST_QUANTITIES],
+            coefficients: [[[0.0; N]; N]; MOST_QUANTITIES],
+            steepness: 0.0,
+        }
+    }
+
     /// Returns about how much the last quantity changes from a pixel to the next, at most.
     pub(super) fn steepness(&self) -> f64 {
         self.steepness
     }
 
-    fn measured_steepness(&self) -> f64 {
-        let count = self.count;
-        let values = &self.values[self.values.len() - count * count..];
-        let most = |pairs: &mut dyn Iterator<Item = (usize, usize, usize)>, per_pixel: f64| {
-            pairs.fold(0.0, |most: f64, (a, b, i)| {
-                let apart = self.nodes_apart[i] / per_pixel;
-                most.max((values[a] - values[b]).abs() / apart)
-            })
-        };
-        let rows = (0..count).flat_map(|j| (1..count).map(move |i| (j, i)));
-        let across = most(
-            &mut rows
-                .clone()
-                .map(|(j, i)| (j * count + i, j * count + i - 1, i)),
-            self.per_pixel.0,
-        );
-        let down = most(
-            &mut rows.map(|(j, i)| (i * count + j, (i - 1) * count + j, i)),
-            self.per_pixel.1,
-        );
-        across.max(down)
+    fn measured_steepness(&self, nodes: &[f64; N], quantity: usize) -> f64 {
+        let values = &self.values[quantity];
+        let (mut across, mut down) = (0.0, 0.0);
+        for i in 1..N {
+            let apart = 1.0 / (nodes[i - 1] - nodes[i]);
+            for k in 0..N {
+                across = f64::max(across, (values[k][i] - values[k][i - 1]).abs() * apart);
+                down = f64::max(down, (values[i][k] - values[i - 1][k]).abs() * apart);
+            }
+        }
+        f64::max(across * self.per_pixel.0, down * self.per_pixel.1)
     }
 
     /// Returns a quantity along the row of pixels' centres at `y`.
     #[inline]
-    pub(super) fn row(&self, quantity: usize, y: f64) -> RowPolynomial {
-        let (count, t) = (self.count, (y - self.centre.1) * self.per_pixel.1);
-        let mut powers = [0.0; MOST_POWERS];
-        let rows = &self.coefficients[quantity * count * count..][..count * count];
-        for row in rows.chunks_exact(count).rev() {
+    pub(super) fn row(&self, quantity: usize, y: f64) -> RowPolynomial<N> {
+        let t = (y - self.centre.1) * self.per_pixel.1;
+        let mut powers = [0.0; N];
+        for row in self.coefficients[quantity].iter().rev() {
             for (power, c) in powers.iter_mut().zip(row) {
                 *power = *power * t + c;
             }
         }
         RowPolynomial {
             powers,
-            count,
             centre: self.centre.0,
             per_pixel: self.per_pixel.0,
         }
     }
 }
 
+/// A polynomial along a row of pixels.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RowPolynomial<const N: usize> {
+    powers: [f64; N],
+    centre: f64,
+    per_pixel: f64,
+}
+
 /// How many pixels are computed side by side.
 const LANES: usize = 16;
 
-impl RowPolynomial {
-    /// The quantity at x.
-    #[inline]
-    pub(super) fn at(&self, x: f64) -> f64 {
-        let t = (x - self.centre) * self.per_pixel;
-        let powers = self.powers[..self.count].iter().rev();
-        powers.fold(0.0, |sum, c| sum * t + c)
-    }
-
-    /// Calls `each` with the quantity at the centres of some pixels of a row at a time, with the first one's column.
+impl<const N: usize> RowPolynomial<N> {
+    /// Computes the quantity at x and at the places that follow, a pixel apart.
     ///
     /// What is computed in single precision is the difference from the value in the patch's middle. So the sum is as
     /// good as a float can be, but for half a unit in its last place.
-    #[inline(always)]
-    pub(super) fn for_lanes(&self, from: usize, to: usize, mut each: impl FnMut(usize, &[f32])) {
+    #[inline(never)]
+    pub(super) fn fill(&self, x: f64, values: &mut [f32]) {
         let middle = self.powers[0] as f32;
-        let mut powers = self.powers.map(|power| power as f32);
+        let mut powers = [0.0; N];
+        for (single, power) in powers.iter_mut().zip(self.powers) {
+            *single = power as f32;
+        }
         powers[0] = (self.powers[0] - f64::from(middle)) as f32;
-        let powers = &powers[..self.count];
-        let step = self.per_pixel as f32;
-        let mut column = from;
-        while column < to {
-            let start = ((column as f64 + 0.5 - self.centre) * self.per_pixel) as f32;
-            let mut sums = [0.0_f32; LANES];
-            let t: [f32; LANES] = core::array::from_fn(|i| start + i as f32 * step);
-            for c in powers.iter().rev() {
-                for (sum, t) in sums.iter_mut().zip(&t) {
-                    *sum = *sum * t + c;
+        let mut steps = [0.0; LANES];
+        for (i, step) in steps.iter_mut().enumerate() {
+            *step = i as f32 * self.per_pixel as f32;
+        }
+        let lanes = |i: usize| {
+            let x = x + (i * LANES) as f64;
+            let start = ((x - self.centre) * self.per_pixel) as f32;
+            let mut sums = [powers[N - 1]; LANES];
+            for c in powers[..N - 1].iter().rev() {
+                for (sum, step) in sums.iter_mut().zip(&steps) {
+                    *sum = *sum * (start + step) + c;
                 }
             }
-            let values = sums.map(|sum| middle + sum);
-            let count = LANES.min(to - column);
-            each(column, &values[..count]);
-            column += count;
+            for sum in &mut sums {
+                *sum += middle;
+            }
+            sums
+        };
+        let (whole, rest) = values.as_chunks_mut::<LANES>();
+        let count = whole.len();
+        for (i, values) in whole.iter_mut().enumerate() {
+            *values = lanes(i);
+        }
+        if !rest.is_empty() {
+            rest.copy_from_slice(&lanes(count)[..rest.len()]);
         }
     }
 }

@@ -6,7 +6,7 @@ use core::f64::consts::PI;
 use rayon::prelude::*;
 
 use super::error::{RenderError, blank};
-use super::ink::{Averaging, Colours, Data, Ink, amplitude};
+use super::ink::{Averaging, Colours, Data, Ink, PlaneRows, amplitude};
 use super::planes::Target;
 use crate::light::{Sight, SightGeometry};
 use crate::orbit::integrate::FixedStep;
@@ -71,8 +71,7 @@ impl<O: Orbits> Frame<'_, O> {
             Target::Rgb8(samples, stride) => {
                 let palette = &colours()?.palette;
                 self.rows(row_done, samples, stride, |place| {
-                    let [r, g, b, _] = palette.rgb8(self.amplitude(place)?);
-                    Ok([r, g, b])
+                    Ok(palette.rgb8(self.amplitude(place)?))
                 })
             }
             Target::Rgb16(samples, stride) => {
@@ -85,21 +84,19 @@ impl<O: Orbits> Frame<'_, O> {
             Target::Planes(planes, layers) => {
                 let data = Data::new(layers, self.colours, self.scene.light(), Averaging::Centre)?;
                 let width = self.view.width() as usize;
-                let rows = Data::bands(planes, width, 1);
-                rows.into_par_iter()
-                    .enumerate()
-                    .try_for_each(|(j, mut row)| {
-                        data.clear(&mut row);
-                        for i in 0..width {
-                            let place = (i as u32, j as u32);
-                            match sight(self.scene, self.view, self.orbits, place)? {
-                                Some(sight) => data.set_sight(&mut row, i, &sight),
-                                None => Data::set_hidden(&mut row, i, self.is_captured(place)?),
-                            }
+                let rows = PlaneRows::bands(planes, width, 1);
+                rows.enumerate().par_bridge().try_for_each(|(j, mut row)| {
+                    data.clear(&mut row, 0, (0, width));
+                    for i in 0..width {
+                        let place = (i as u32, j as u32);
+                        match sight(self.scene, self.view, self.orbits, place)? {
+                            Some(sight) => data.set_sight(&mut row, i, &sight),
+                            None => Data::set_hidden(&mut row, i, self.is_captured(place)?),
                         }
-                        row_done();
-                        Ok(())
-                    })
+                    }
+                    row_done();
+                    Ok(())
+                })
             }
         }
     }

@@ -4,10 +4,10 @@ use std::time::{Duration, Instant};
 
 use super::error::RenderError;
 use super::frame::{Threads, Workspace};
-use super::ink::{Averaging, Colours, Data, Rgb8, Rgb16, Rows};
+use super::ink::{Averaging, Colours, Data, Display, Ink, PlaneRows, Rows};
 use super::pixelwise;
 use super::planes::Target;
-use super::shaded::{ShadedFrame, rows_of_band};
+use super::shaded::{ROWS_OF_BAND, ShadedFrame};
 use super::shader::Shader;
 use crate::isoradial::{EdgeError, Isoradials, RadiusMap};
 use crate::orbit::path::SweptAngles;
@@ -79,46 +79,49 @@ impl<A: SweptAngles> SceneFrame<'_, A> {
     ) -> Result<(), RenderError> {
         let (view, curves, threads) = (self.view, self.curves, self.threads);
         let smooth = self.scene.antialias();
-        let target = match target {
-            Target::Grey8(samples, stride) => {
-                return workspace.draw(view, curves, smooth, threads, samples, stride);
-            }
-            Target::Grey16(samples, stride) => {
-                return workspace.draw(view, curves, smooth, threads, samples, stride);
-            }
-            shaded => shaded,
-        };
-        let none = RadiusMap::default();
-        let gaps = |order, h, meets| curves.u_in_gap(order, h, meets, self.angles);
-        let shader = Shader::new(view, curves, self.map.unwrap_or(&none), &gaps);
-        let how = (smooth, threads);
         let averaging = if smooth {
             Averaging::Square
         } else {
             Averaging::Centre
         };
         let width = view.width() as usize;
-        let rows = rows_of_band(width);
+        let rows = ROWS_OF_BAND;
         match target {
-            Target::Grey8(..) | Target::Grey16(..) => {}
+            Target::Grey8(samples, stride) => {
+                workspace.draw(view, curves, smooth, threads, samples, stride)?;
+            }
+            Target::Grey16(samples, stride) => {
+                workspace.draw(view, curves, smooth, threads, samples, stride)?;
+            }
             Target::Rgb8(samples, stride) => {
-                let ink = Rgb8(self.colours()?, averaging);
-                let bands = Rows::bands(samples, stride, 3 * width, rows);
-                ShadedFrame::new(workspace.for_shading(), &shader, how).paint(&ink, bands);
+                let ink = Display::<u8>::new(self.colours()?, averaging);
+                self.shade(workspace, &ink, Rows::bands(samples, stride, rows));
             }
             Target::Rgb16(samples, stride) => {
-                let ink = Rgb16(self.colours()?, averaging);
-                let bands = Rows::bands(samples, stride, 3 * width, rows);
-                ShadedFrame::new(workspace.for_shading(), &shader, how).paint(&ink, bands);
+                let ink = Display::<u16>::new(self.colours()?, averaging);
+                self.shade(workspace, &ink, Rows::bands(samples, stride, rows));
             }
             Target::Planes(planes, layers) => {
                 let ink = Data::new(layers, self.colours, self.scene.light(), averaging)?;
-                let bands = Data::bands(planes, width, rows);
-                ShadedFrame::new(workspace.for_shading(), &shader, how)
-                    .paint(&ink, bands.into_iter());
+                self.shade(workspace, &ink, PlaneRows::bands(planes, width, rows));
             }
         }
         Ok(())
+    }
+
+    /// Paints bands of light or data.
+    fn shade<'b, I: Ink<N>, const N: usize>(
+        &self,
+        workspace: &mut Workspace,
+        ink: &I,
+        bands: impl Iterator<Item = I::Band<'b>> + Send,
+    ) {
+        let none = RadiusMap::default();
+        let (map, curves) = (self.map.unwrap_or(&none), self.curves);
+        let gaps = |order, h, meets| curves.u_in_gap(order, h, meets, self.angles);
+        let shader = Shader::new(self.view, curves, map, &gaps);
+        let how = (self.scene.antialias(), self.threads);
+        ShadedFrame::new(workspace.for_shading(), &shader, how).paint(ink, bands);
     }
 
     fn colours(&self) -> Result<&Colours, RenderError> {

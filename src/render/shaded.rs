@@ -6,19 +6,18 @@
 
 use std::cell::{Cell, RefCell};
 
-use super::banded::{BandScratch, BandedOutline, DrawnOutline};
+use super::banded::{BandScratch, BandedOutline};
 use super::cells::{Cells, ONE};
 use super::frame::{Threads, on_threads};
 use super::ink::{Ink, Part};
 use super::painter::{Painter, Partial, Run, TILE};
-use super::patch::{Patch, PatchFit};
 use super::path::OutlinePath;
 use super::projection::Projection;
 use super::shader::Shader;
 use crate::isoradial::Boundary;
 
-/// Memory for the cells of a band, in bytes: what the nearer caches hold.
-const BAND: usize = 1 << 20;
+/// A band is a row of tiles.
+pub(super) const ROWS_OF_BAND: usize = TILE.1;
 
 /// A share above this counts as the whole: areas are rounded.
 const WHOLE: i64 = ONE - 8;
@@ -31,8 +30,6 @@ const LEAST: i64 = 16;
 pub(super) struct ShadedWorkspace {
     outlines: Vec<(u32, BandedOutline)>,
     scratch: Vec<ShadedScratch>,
-    /// The fit of patches, and its degree.
-    fit: Option<(usize, PatchFit)>,
 }
 
 /// What a thread draws a band with.
@@ -44,16 +41,10 @@ struct ShadedScratch {
     parts: Vec<Part>,
     /// For hard edges: the order of each pixel of the band.
     orders: Vec<u8>,
-    patch: Patch,
 }
 
 /// No order, in [`ShadedScratch::orders`].
 const NONE: u8 = u8::MAX;
-
-/// The rows of a band, whole tiles.
-pub(super) fn rows_of_band(width: usize) -> usize {
-    (BAND / (size_of::<i64>() * width)).max(TILE.1) / TILE.1 * TILE.1
-}
 
 /// A frame with light or data, and the memory that it is drawn with.
 pub(super) struct ShadedFrame<'a> {
@@ -80,60 +71,37 @@ impl<'a> ShadedFrame<'a> {
         }
     }
 
-    /// Paints the frame band by band. `bands` are the parts of its memory, each of [`rows_of_band`] rows.
-    pub(super) fn paint<'b, I: Ink>(
+    /// Paints the frame band by band. `bands` are the parts of its memory, each of [`ROWS_OF_BAND`] rows.
+    pub(super) fn paint<'b, I: Ink<N>, const N: usize>(
         mut self,
         ink: &I,
         bands: impl Iterator<Item = I::Band<'b>> + Send,
-    ) where
-        I::Band<'b>: Send,
-    {
+    ) {
         let (shader, smooth) = (self.shader, self.smooth);
         let (view, curves) = (shader.view, shader.curves);
-        let (width, height) = (view.width() as usize, view.height() as usize);
-        let rows = rows_of_band(width);
+        let height = view.height() as usize;
+        let rows = ROWS_OF_BAND;
         let count = self.threads.count();
         let is_meaningful = self.draw_outlines(rows);
         let workspace = self.workspace;
-        let fit = match &mut workspace.fit {
-            Some((degree, fit)) if *degree == ink.degree() => fit,
-            kept => &mut kept.insert((ink.degree(), PatchFit::new(ink.degree()))).1,
-        };
         let outlines = &workspace.outlines[..curves.orders().len()];
-        let drawn: Vec<_> = outlines
-            .iter()
-            .map(|(order, outline)| {
-                let sees = |place| shader.front_at(place) == Some(*order);
-                (*order, outline.drawn(view, curves, smooth, rows, sees))
-            })
-            .collect();
         let scratch = &mut workspace.scratch;
         scratch.resize_with(scratch.len().max(count), Default::default);
         on_threads(&mut scratch[..count], bands, |scratch, band, mut memory| {
             let top = band * rows;
             let rows = rows.min(height - top);
-            let painter = Painter {
-                shader,
-                ink,
-                fit,
-                smooth,
-                top,
-            };
-            ink.clear(&mut memory);
-            if smooth && is_meaningful {
-                scratch.paint_smooth(&drawn, band, rows, &painter, &mut memory);
+            let painter = Painter { shader, ink, top };
+            if smooth && is_meaningful && !outlines.is_empty() {
+                scratch.paint_smooth(outlines, band, rows, &painter, &mut memory);
             } else {
-                let drawn = if is_meaningful {
-                    Some(&drawn[..])
-                } else {
-                    None
-                };
-                scratch.find_orders(drawn, band, rows, &painter);
+                let outlines = is_meaningful.then_some(outlines);
+                scratch.find_orders(outlines, band, rows, &painter);
+                painter.clear_but(rows, &[], &mut memory);
                 for shown in curves.orders() {
                     scratch.paint_order(shown.number(), rows, &painter, &mut memory);
                 }
             }
-            ink.finish(&mut memory, shader, top, smooth);
+            ink.finish(&mut memory, shader, top);
         });
     }
 
@@ -152,47 +120,51 @@ impl<'a> ShadedFrame<'a> {
             let weight = |boundary: &Boundary| {
                 i32::from(boundary.above == number) - i32::from(boundary.below == number)
             };
-            outline.draw(self.half, &projection, self.smooth, weight, on_all_threads);
-            outline.sort(view.height() as usize, rows);
+            outline.trace(self.half, &projection, self.smooth, weight, on_all_threads);
             is_meaningful &= outline.is_meaningful(curves);
+            let sees = |place| self.shader.front_at(place) == number;
+            outline.sort(view, rows, sees);
         }
         is_meaningful
     }
 }
 
 /// Orders and their outlines.
-type Outlines<'a> = [(u32, DrawnOutline<'a>)];
+type Outlines = [(u32, BandedOutline)];
 
 impl ShadedScratch {
     /// Paints a band with smooth edges.
-    fn paint_smooth<I: Ink>(
+    fn paint_smooth<I: Ink<N>, const N: usize>(
         &mut self,
-        outlines: &Outlines<'_>,
+        outlines: &Outlines,
         band: usize,
         rows: usize,
-        painter: &Painter<'_, I>,
+        painter: &Painter<'_, I, N>,
         memory: &mut I::Band<'_>,
     ) {
         self.partial.clear();
-        for (order, outline) in outlines {
+        for (i, (order, outline)) in outlines.iter().enumerate() {
             self.runs.clear();
             outline.draw(band, &mut self.band);
             let (runs, partial) = (&mut self.runs, &mut self.partial);
             self.band.rows(|cells, row, left| {
                 collect(cells, row, left, *order, runs, partial);
             });
-            painter.paint_runs(*order, rows, &self.runs, &mut self.patch, memory);
+            if i == 0 {
+                painter.clear_but(rows, &[], memory);
+            }
+            painter.paint_runs(*order, rows, &self.runs, memory);
         }
         painter.paint_partial(&mut self.partial, &mut self.parts, memory);
     }
 
     /// Finds the order that the centre of each pixel of a band sees: from outlines, or by asking each.
-    fn find_orders<I>(
+    fn find_orders<I, const N: usize>(
         &mut self,
-        outlines: Option<&Outlines<'_>>,
+        outlines: Option<&Outlines>,
         band: usize,
         rows: usize,
-        painter: &Painter<'_, I>,
+        painter: &Painter<'_, I, N>,
     ) {
         let shader = painter.shader;
         let width = shader.view.width() as usize;
@@ -233,11 +205,11 @@ impl ShadedScratch {
     }
 
     /// Paints the pixels whose centres see an order.
-    fn paint_order<I: Ink>(
+    fn paint_order<I: Ink<N>, const N: usize>(
         &mut self,
         order: u32,
         rows: usize,
-        painter: &Painter<'_, I>,
+        painter: &Painter<'_, I, N>,
         memory: &mut I::Band<'_>,
     ) {
         self.runs.clear();
@@ -245,7 +217,7 @@ impl ShadedScratch {
         for (row, orders) in self.orders.chunks_exact(width).enumerate() {
             runs_of(orders, order as u8, row, &mut self.runs);
         }
-        painter.paint_runs(order, rows, &self.runs, &mut self.patch, memory);
+        painter.paint_runs(order, rows, &self.runs, memory);
     }
 }
 

@@ -1,11 +1,11 @@
 //! What the ray of any place in the picture shows, from the map of the camera's radius.
 
 use super::centre::front;
+use super::flux_spline::FluxSpline;
 use super::section::Section;
 use crate::isoradial::{Isoradials, PlaneMeeting, RadiusMap};
-use crate::light::{SightGeometry, flux, redshift};
+use crate::light::{SightGeometry, redshift};
 use crate::scene::{Affine, PixelRay, View};
-use crate::table::spline::{self, NodeAxis, Scale};
 
 /// Finds the inverse radius at which a ray with `κ − κ_c = h` meets the disk's plane in an order, where the map has a
 /// gap.
@@ -23,9 +23,7 @@ pub(super) struct Shader<'a> {
     pub(super) u_edges: (f64, f64),
     /// Whether the camera is in the disk's plane.
     pub(super) is_in_plane: bool,
-    /// `√(F/F_max)/u^{3/2}` as a spline of √u, in which it is analytic.
-    flux: Vec<f64>,
-    flux_axis: Scale,
+    pub(super) flux: &'static FluxSpline,
     /// Partly covered pixels are taken apart into so many parts a side.
     pub(super) fineness: usize,
 }
@@ -36,9 +34,6 @@ const FINE: f64 = 24.0;
 
 /// The most parts a side.
 const FINEST: f64 = 48.0;
-
-/// Nodes of the spline of the flux: right to some 1e-9.
-const FLUX_NODES: u32 = 160;
 
 /// A ray of the picture.
 #[derive(Debug, Clone, Copy)]
@@ -58,22 +53,8 @@ impl<'a> Shader<'a> {
         map: &'a RadiusMap,
         gaps: Gaps<'a>,
     ) -> Self {
-        let (outer, inner) = curves.u_edges();
-        // The map goes beyond the edges.
-        let axis = NodeAxis {
-            start: (0.4 * outer).sqrt(),
-            end: (1.3 * inner).min(0.6).sqrt(),
-            nodes: FLUX_NODES,
-        };
-        let flux: Vec<f64> = (0..FLUX_NODES)
-            .map(|i| {
-                let v = axis.node(i);
-                flux::signed_root(v * v) / (v * v * v)
-            })
-            .collect();
         Self {
-            flux: spline::coefficients(&flux),
-            flux_axis: Scale::new(axis),
+            flux: FluxSpline::shared(),
             fineness: (FINE * view.pixel_side() * view.radius())
                 .ceil()
                 .clamp(1.0, FINEST) as usize,
@@ -171,14 +152,7 @@ impl<'a> Shader<'a> {
     #[inline(always)]
     pub(super) fn amplitude(&self, u: f64, lambda: f64) -> f64 {
         let g = self.redshift(u, lambda);
-        g * g * self.flux_root(u)
-    }
-
-    /// Returns [`flux::signed_root`] from its spline.
-    #[inline(always)]
-    pub(super) fn flux_root(&self, u: f64) -> f64 {
-        let v = u.sqrt();
-        u * v * spline::value(&self.flux, &self.flux_axis.stencil(v))
+        g * g * self.flux.signed_root(u)
     }
 
     /// Returns the order in front along a ray.

@@ -1,0 +1,135 @@
+//! Light as colours, and its means over pixels.
+
+use std::sync::OnceLock;
+
+use super::Part;
+use crate::light::{DisplayTransform, Palette, Radiance, RadianceTable};
+use crate::render::mixture::Mixture;
+use crate::render::painter::TILE;
+use crate::render::patch::Patch;
+use crate::render::planes::Form;
+use crate::scene::{Light, Scene, Tone};
+
+/// How light becomes colours.
+#[derive(Debug)]
+pub(in crate::render) struct Colours {
+    pub(in crate::render) radiance: RadianceTable,
+    pub(in crate::render) display: DisplayTransform,
+    pub(in crate::render) palette: Palette,
+}
+
+/// Linear light of pixels of a row, side by side, at most as many as a tile has columns.
+pub(super) type RowLight = [[f32; 3]; TILE.0];
+
+impl Colours {
+    /// Prepares the colours of a scene with light.
+    pub(in crate::render) fn new(light: Light, exposure: f64, tone: Tone) -> Self {
+        let radiance = RadianceTable::new(&Radiance::new(light));
+        let display = DisplayTransform::new(exposure, tone);
+        Self {
+            palette: Palette::new(&radiance, &display),
+            radiance,
+            display,
+        }
+    }
+
+    /// Returns the linear light of pixels of a row from their amplitude, the given quantity of a patch: its mean over
+    /// `parts` places a side of each. `columns` are the first one and the one after the last.
+    pub(super) fn of_row<const N: usize>(
+        &self,
+        (patch, quantity): (&Patch<N>, usize),
+        (from, to): (usize, usize),
+        y: f64,
+        parts: usize,
+    ) -> RowLight {
+        let (mut light, mut amplitudes) = ([[0.0; 3]; TILE.0], [0.0; TILE.0]);
+        let share = 1.0 / (parts * parts) as f32;
+        for j in 0..parts {
+            let row = patch.row(quantity, y + offset(j, parts));
+            for i in 0..parts {
+                let x = from as f64 + 0.5 + offset(i, parts);
+                row.fill(x, &mut amplitudes[..to - from]);
+                for (light, amplitude) in light.iter_mut().zip(&amplitudes[..to - from]) {
+                    let rgb = self.radiance.rgb(*amplitude);
+                    for (sum, c) in light.iter_mut().zip(rgb) {
+                        *sum += share * c;
+                    }
+                }
+            }
+        }
+        light
+    }
+
+    /// Returns the linear light of a pixel that is covered in part, times the share.
+    pub(super) fn mixed(&self, parts: &[Part], mixture: &Mixture<'_>) -> [f32; 3] {
+        let mut sum = [0.0; 3];
+        for part in parts {
+            let mean = mixture.mean(part.order, f64::from(part.share), |y| {
+                self.radiance.rgb(y as f32)
+            });
+            for (sum, c) in sum.iter_mut().zip(mean) {
+                *sum += part.share * c;
+            }
+        }
+        sum
+    }
+}
+
+/// The colours of an animation, computed when a frame first needs them: light, exposure and tone are those of all its
+/// frames.
+#[derive(Debug, Default)]
+pub(in crate::render) struct SharedColours(OnceLock<Colours>);
+
+impl SharedColours {
+    /// The colours of a scene, where it has light and the form shows it.
+    pub(in crate::render) fn of(&self, scene: &Scene, form: Form) -> Option<&Colours> {
+        let light = scene.light()?;
+        let new = || Colours::new(light, scene.exposure(), scene.tone());
+        form.shows_light().then(|| self.0.get_or_init(new))
+    }
+}
+
+/// What of a pixel's light is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::render) enum Averaging {
+    /// The mean over its square.
+    Square,
+    /// Its centre's.
+    Centre,
+}
+
+/// The most places a side of a pixel over which its light is averaged.
+const MOST_PARTS: usize = 8;
+
+/// Where the amplitude changes by less than this from a pixel to the next, the light of the centre is the mean: it is
+/// off by about `L″ δ²/24` where the amplitude changes by δ, with L″ some 10, so by 1e-3 of the hottest ring's light.
+const FLAT: f64 = 0.05;
+
+/// Two places a side, at ±1/√12, are exact to the fourth power of the change. They do up to this change.
+const STEEP: f64 = 0.3;
+
+impl Averaging {
+    /// Returns over how many places a side of a pixel its light is averaged. The last quantity of the patch is the
+    /// amplitude.
+    pub(super) fn parts<const N: usize>(self, patch: &Patch<N>) -> usize {
+        match (self, patch.steepness()) {
+            (Self::Centre, _) => 1,
+            (Self::Square, flat) if flat <= FLAT => 1,
+            (Self::Square, steep) if steep <= STEEP => 2,
+            (Self::Square, steep) if steep <= 2.0 * STEEP => 4,
+            (Self::Square, _) => MOST_PARTS,
+        }
+    }
+}
+
+/// Returns where the i-th of `parts` places of a pixel's side is, from its middle: pairs of Gauss's places.
+fn offset(i: usize, parts: usize) -> f64 {
+    /// `1/√12`
+    const GAUSS: f64 = 0.288_675_134_594_812_9;
+    if parts == 1 {
+        return 0.0;
+    }
+    let pairs = (parts / 2) as f64;
+    let pair = ((i / 2) as f64 + 0.5) / pairs - 0.5;
+    pair + (if i.is_multiple_of(2) { -GAUSS } else { GAUSS }) / pairs
+}
