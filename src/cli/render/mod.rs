@@ -23,6 +23,7 @@ mod run_stats;
 mod sequence;
 mod summary;
 mod y4m;
+mod yuv;
 
 use std::io::{self, Write};
 
