@@ -28,7 +28,7 @@ mod yuv;
 use std::io::{self, Write};
 
 pub(super) use args::RenderArgs;
-pub(super) use output::frames_without_number;
+pub(super) use output::sequence;
 use plan::Plan;
 
 use super::progress::{ProgressKind, Report};
