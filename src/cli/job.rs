@@ -4,11 +4,9 @@ use std::path::{Component, Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::destination::{has_extension, unsupported_extension};
 use super::misuse::misuse;
-use super::pattern::Pattern;
 use super::progress::Report;
-use super::render::frames_without_number;
+use super::render;
 use super::stdio::print;
 use crate::render::needs::Needs;
 use crate::scene::{Animation, builtins};
@@ -28,7 +26,8 @@ pub(super) struct JobArgs {
     /// Frames per task
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
     chunk: u32,
-    /// The files of the frames, with #### in place of the number [default: frames/NAME_####.png]
+    /// The files of the frames, .png, .exr or .npz, with #### in place of the number [default: frames/NAME_####.png,
+    /// or .exr if the scene has layers]
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
     /// The table's file [default: the one that the scene needs, in the folder tables]
@@ -70,16 +69,7 @@ pub(super) fn run(args: &JobArgs, report: Report) -> anyhow::Result<()> {
     }
     let default = || table::default_path(table_name);
     let table = args.table.clone().unwrap_or_else(default);
-    let name = args.scene.file_stem().unwrap_or(args.scene.as_os_str());
-    let name = name.to_string_lossy();
-    let default = || Path::new("frames").join(format!("{name}_####.png"));
-    let output = args.output.clone().unwrap_or_else(default);
-    if !has_extension(&output, "png") {
-        return Err(unsupported_extension(&output, ".png"));
-    }
-    if Pattern::parse(&output)?.is_none() {
-        return Err(frames_without_number(&output, frames.into()));
-    }
+    let output = render::sequence(&args.scene, &animation, args.output.as_deref())?;
     let [scene, table, output] = [&args.scene, &table, &output].map(|path| text(path));
     let (scene, table, output) = (scene?, table?, output?);
 

@@ -5,11 +5,12 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
+use std::path::Path;
 use std::process::Command;
 
 use tempfile::tempdir;
 
-use crate::harness::{PATTERN, done, files, refused, run, with_animation};
+use crate::harness::{PATTERN, done, files, printed, refused, run, with_animation};
 
 #[test]
 fn frames_are_numbered_files_that_record_what_they_were_made_of() {
@@ -274,6 +275,52 @@ fn misuse_is_reported_before_anything_is_done() {
     assert!(stderr.contains("no [animation]"), "{stderr}");
     let left: Vec<_> = files(here).into_keys().collect();
     assert_eq!(left, ["small.toml", "tables"]);
+}
+
+#[test]
+fn a_job_writes_the_files_that_render_writes_and_refuses_others_in_the_same_words() {
+    let folder = with_animation(3);
+    let here = folder.path();
+    let toml = fs::read_to_string(here.join("small.toml")).unwrap();
+    let layered = toml.replace("[image]", "[image]\nlayers = [\"radius\"]");
+    fs::write(here.join("layered.toml"), layered).unwrap();
+    let program = Path::new(env!("CARGO_BIN_EXE_darkness")).parent().unwrap();
+    let path = std::env::join_paths([program, Path::new("/usr/bin"), Path::new("/bin")]).unwrap();
+    for (args, files_of_render) in [
+        (&["layered.toml"] as &[_], "frames/layered_####.exr"),
+        (&["small.toml", "-o", "n/f_%02d.npz"], "n/f_%02d.npz"),
+    ] {
+        let job = printed(here, &[&["job", "slurm"], args].concat());
+        let task = Command::new("bash")
+            .args(["-c", &job])
+            .env("PATH", &path)
+            .env("SLURM_ARRAY_TASK_ID", "0")
+            .current_dir(here)
+            .output()
+            .unwrap();
+        assert!(task.status.success(), "{task:?}");
+        let out = here.join(files_of_render).parent().unwrap().to_path_buf();
+        let of_task = files(&out);
+        assert_eq!(of_task.len(), 3);
+        fs::remove_dir_all(&out).unwrap();
+        done(here, &["render", args[0], "-o", files_of_render]);
+        assert!(of_task == files(&out));
+    }
+    for args in [
+        ["layered.toml", "-o", "f_####.png"],
+        ["small.toml", "-o", "f.exr"],
+    ] {
+        let (job, of_job) = run(here, &[&["job", "openjd"], &args[..]].concat());
+        let (_, of_render) = run(here, &[&["render"], &args[..]].concat());
+        assert_eq!(job.status.code(), Some(2));
+        assert_eq!(of_job, of_render);
+    }
+    refused(
+        here,
+        &["job", "slurm", "small.toml", "-o", "film_##.mp4"],
+        2,
+        &["unsupported extension; expected .png, .exr or .npz"],
+    );
 }
 
 #[test]

@@ -15,8 +15,6 @@ pub(super) fn checked(
     animation: &Animation,
     format: Format,
 ) -> anyhow::Result<Form> {
-    let (layers, bits) = (animation.layers(), animation.bits());
-    let is_lit = animation.light().is_some();
     let name = format.extension();
     if args.bits.is_some() && format != Format::Png {
         return Err(misuse(format!(
@@ -28,6 +26,17 @@ pub(super) fn checked(
             "--exposure changes pictures and films, and .{name} files hold light as it is; leave it out"
         )));
     }
+    of(animation, format)
+}
+
+/// The pixels of an animation's frames, apart from what the options ask for.
+///
+/// # Errors
+/// The format cannot hold them.
+pub(super) fn of(animation: &Animation, format: Format) -> anyhow::Result<Form> {
+    let (layers, bits) = (animation.layers(), animation.bits());
+    let is_lit = animation.light().is_some();
+    let name = format.extension();
     if format.has_layers() {
         return Ok(Form::Layers(with_defaults(layers, format, is_lit)));
     }
@@ -70,12 +79,8 @@ pub(super) fn checked(
 /// # Errors
 /// Those of [`checked`].
 pub(super) fn expected(args: &RenderArgs, animation: &Animation) -> anyhow::Result<Form> {
-    let default = if animation.layers().is_empty() {
-        Format::Png
-    } else {
-        Format::Exr
-    };
-    checked(args, animation, args.format.unwrap_or(default))
+    let format = args.format.unwrap_or_else(|| Format::default_of(animation));
+    checked(args, animation, format)
 }
 
 /// The layers of a file: those that the scene names, or else coverage, and colour where there is light. An OpenEXR file

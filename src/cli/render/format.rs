@@ -5,6 +5,7 @@ use std::path::Path;
 use clap::ValueEnum;
 
 use super::super::destination::has_extension;
+use crate::scene::Animation;
 
 /// What is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -36,6 +37,18 @@ pub(super) enum Format {
 impl Format {
     /// The extensions of all formats, in words.
     pub(super) const EXTENSIONS: &str = ".png, .exr, .npz, .y4m, .raw, .mp4, .mov, .mkv or .webm";
+
+    /// The extensions of the formats with a file for each frame, in words.
+    pub(super) const SEQUENCE_EXTENSIONS: &str = ".png, .exr or .npz";
+
+    /// The format of an animation's frames unless another is asked for: one that holds its layers, if it has any.
+    pub(super) fn default_of(animation: &Animation) -> Self {
+        if animation.layers().is_empty() {
+            Self::Png
+        } else {
+            Self::Exr
+        }
+    }
 
     /// The format of a path's extension, [`Self::Png`] for any other.
     pub(super) fn of(path: &Path) -> Self {

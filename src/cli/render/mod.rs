@@ -23,11 +23,12 @@ mod run_stats;
 mod sequence;
 mod summary;
 mod y4m;
+mod yuv;
 
 use std::io::{self, Write};
 
 pub(super) use args::RenderArgs;
-pub(super) use output::frames_without_number;
+pub(super) use output::sequence;
 use plan::Plan;
 
 use super::progress::{ProgressKind, Report};

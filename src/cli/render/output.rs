@@ -10,6 +10,7 @@ use super::super::misuse::misuse;
 use super::super::pattern::Pattern;
 use super::super::writable::{self, OUTPUT};
 use super::args::RenderArgs;
+use super::form;
 use super::format::Format;
 use crate::scene::Animation;
 
@@ -122,8 +123,30 @@ fn of_pictures(
     Err(frames_without_number(&path, count))
 }
 
+/// The files of an animation's frames: `output`, or the default name in the folder `frames`.
+///
+/// # Errors
+/// It has no place for the frame's number, or the format of its extension cannot hold the frames.
+pub(in crate::cli) fn sequence(
+    scene: &Path,
+    animation: &Animation,
+    output: Option<&Path>,
+) -> anyhow::Result<PathBuf> {
+    let default = || Path::new("frames").join(default_name(scene, animation, None));
+    let path = output.map_or_else(default, Path::to_path_buf);
+    let format = Format::of(&path);
+    if format.is_film() || !has_extension(&path, format.extension()) {
+        return Err(unsupported_extension(&path, Format::SEQUENCE_EXTENSIONS));
+    }
+    form::of(animation, format)?;
+    if Pattern::parse(&path)?.is_none() {
+        return Err(frames_without_number(&path, animation.frames().into()));
+    }
+    Ok(path)
+}
+
 /// The error of one name for several frames.
-pub(in crate::cli) fn frames_without_number(path: &Path, count: u64) -> anyhow::Error {
+fn frames_without_number(path: &Path, count: u64) -> anyhow::Error {
     misuse(format!(
         "{}: {count} frames do not fit one picture; put a place for the number in the name, as in f_####.png or \
          f_%04d.png, choose one frame with --frames, or make a film with --format y4m",
@@ -143,11 +166,7 @@ fn default_name(scene: &Path, animation: &Animation, format: Option<Format>) -> 
     let mut name = scene
         .file_stem()
         .map_or_else(|| OsString::from("picture"), OsString::from);
-    let format = format.unwrap_or(if animation.layers().is_empty() {
-        Format::Png
-    } else {
-        Format::Exr
-    });
+    let format = format.unwrap_or_else(|| Format::default_of(animation));
     if !format.is_film() && !animation.is_still() {
         name.push("_");
         name.push("#".repeat(DIGITS));

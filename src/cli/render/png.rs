@@ -96,8 +96,9 @@ pub(super) fn encode(
     } else {
         encoder.set_source_gamma(ScaledFloat::new(1.0));
     }
-    // Measured on masks and on smooth colour: the fastest, and for 8 and 16 bits within a tenth of the smallest file
-    // that any filter gives at this speed.
+    // Measured on masks and on the lit built-in scenes: the fastest. For 8 and 16 bits files are within a third of the
+    // smallest that any filter gives at this speed. The next better compression halves them, and takes 4 to 13 times
+    // as long.
     encoder.set_compression(Compression::Fast);
     encoder.set_filter(if depth == BitDepth::One {
         Filter::Up

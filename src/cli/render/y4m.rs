@@ -6,6 +6,7 @@
 //! told otherwise. R, G and B become Y, U and V by the matrix of BT.709; the format has no tag for that. A mask's
 //! linear coverage is its luma. Grey films have full range and no chroma (`Cmono`, `XCOLORRANGE=FULL`).
 
+use super::yuv::{self, BLACK, NO_COLOUR};
 use crate::render::Pixels;
 use crate::scene::ImageSize;
 use crate::scene::animation::Rate;
@@ -27,37 +28,26 @@ fn with_coding(ImageSize { width, height }: ImageSize, rate: Rate, coding: &str)
     format!("YUV4MPEG2 W{width} H{height} F{rate} Ip A1:1 {coding}\n")
 }
 
-/// The bits of the fraction of the weights below.
-const FRACTION: u32 = 16;
-
-/// Luma's weights of red, green and blue (ITU-R BT.709-6, 3.2), times 219/255.
-const LUMA: [i32; 3] = [11966, 40254, 4064];
-
-/// The weights of (B − Y)/1.8556 and (R − Y)/1.5748, times 224/255. Their sums are 0: grey has U = V = 128 exactly.
-const BLUE: [i32; 3] = [-6596, -22188, 28784];
-const RED: [i32; 3] = [28784, -26145, -2639];
-
-/// The value of black, and of no colour.
-const BLACK: u8 = 16;
-const NO_COLOUR: u8 = 128;
-
 /// Writes a frame of even width and height, with its mark, over `frame`. Layers and wide samples have no form here: the
-/// frame stays black.
+/// frame is black.
 pub(super) fn encode(pixels: Pixels<'_>, size: ImageSize, frame: &mut Vec<u8>) {
     let (width, height) = (size.width as usize, size.height as usize);
-    frame.clear();
-    frame.extend_from_slice(MARK);
-    frame.resize(MARK.len() + width * height, BLACK);
-    frame.resize(frame.len() + width * height / 2, NO_COLOUR);
+    // All bytes are written below: a frame of the same size is not cleared first.
+    frame.resize(MARK.len() + width * height * 3 / 2, 0);
+    frame[..MARK.len()].copy_from_slice(MARK);
     let (luma, chroma) = frame[MARK.len()..].split_at_mut(width * height);
     match pixels {
         Pixels::Grey8(pixels) => {
             for (luma, &grey) in luma.iter_mut().zip(pixels) {
                 *luma = luma_of_grey(grey);
             }
+            chroma.fill(NO_COLOUR);
         }
-        Pixels::Rgb8(pixels) => encode_colour(pixels.as_chunks().0, width, luma, chroma),
-        Pixels::Grey16(_) | Pixels::Rgb16(_) | Pixels::Planes(_) => {}
+        Pixels::Rgb8(pixels) => yuv::convert(pixels, width, luma, chroma),
+        Pixels::Grey16(_) | Pixels::Rgb16(_) | Pixels::Planes(_) => {
+            luma.fill(BLACK);
+            chroma.fill(NO_COLOUR);
+        }
     }
 }
 
@@ -65,37 +55,6 @@ pub(super) fn encode(pixels: Pixels<'_>, size: ImageSize, frame: &mut Vec<u8>) {
 fn luma_of_grey(grey: u8) -> u8 {
     let scaled = u16::from(grey) * 219 + 128;
     BLACK + ((scaled + (scaled >> 8)) >> 8) as u8
-}
-
-fn encode_colour(pixels: &[[u8; 3]], width: usize, luma: &mut [u8], chroma: &mut [u8]) {
-    for (luma, &pixel) in luma.iter_mut().zip(pixels) {
-        *luma = code(LUMA, pixel.map(i32::from), BLACK, FRACTION);
-    }
-    let (blue, red) = chroma.split_at_mut(chroma.len() / 2);
-    let places = blue.chunks_mut(width / 2).zip(red.chunks_mut(width / 2));
-    for (rows, (blue, red)) in pixels.chunks(2 * width).zip(places) {
-        let (top, bottom) = rows.split_at(width);
-        let sum = |column: usize| -> [i32; 3] {
-            core::array::from_fn(|i| i32::from(top[column][i]) + i32::from(bottom[column][i]))
-        };
-        // A sample is a quarter of the column to its left, half of its own, and a quarter of the one to its right. The
-        // first column is its own left neighbour.
-        let mut left = sum(0);
-        for (i, (blue, red)) in blue.iter_mut().zip(red).enumerate() {
-            let (own, right) = (sum(2 * i), sum(2 * i + 1));
-            let eightfold = core::array::from_fn(|i| left[i] + 2 * own[i] + right[i]);
-            *blue = code(BLUE, eightfold, NO_COLOUR, FRACTION + 3);
-            *red = code(RED, eightfold, NO_COLOUR, FRACTION + 3);
-            left = right;
-        }
-    }
-}
-
-/// `offset` and the weighted sum of `colour`, which is scaled by 2 to the power of `fraction`; to the nearest.
-fn code(weights: [i32; 3], colour: [i32; 3], offset: u8, fraction: u32) -> u8 {
-    let [red, green, blue] = colour;
-    let sum = weights[0] * red + weights[1] * green + weights[2] * blue;
-    (i32::from(offset) + ((sum + (1 << (fraction - 1))) >> fraction)) as u8
 }
 
 #[cfg(test)]
