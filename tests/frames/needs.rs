@@ -152,17 +152,23 @@ fn scenes(count: usize) -> Vec<Scene> {
     (0..count).map(|_| scene()).collect()
 }
 
+/// What a scene needs of its curves, and the same for eight times the tolerance.
+fn specs(scene: &Scene) -> (CurveSpec, CurveSpec) {
+    let spec = Needs::new(scene, &View::new(scene)).curve_spec;
+    let coarser = CurveSpec {
+        tolerance: 8.0 * spec.tolerance,
+        ..spec
+    };
+    (spec, coarser)
+}
+
 /// What eight times the tolerance leaves of each choice breaks the tolerance itself in some scenes, so that none is
 /// padded by as much: the nodes.
 #[test]
 fn nodes_for_eight_times_the_tolerance_are_too_few() {
     let mut broken = 0;
     for scene in scenes(60) {
-        let spec = Needs::new(&scene, &View::new(&scene)).curve_spec;
-        let coarser = CurveSpec {
-            tolerance: 8.0 * spec.tolerance,
-            ..spec
-        };
+        let (spec, coarser) = specs(&scene);
         // Exact angles: what is off is the interpolation.
         let curves = Isoradials::new(&coarser, &Exact);
         broken += usize::from(displacement(&spec, &curves) > spec.tolerance);
@@ -202,11 +208,7 @@ fn tables_for_eight_times_the_tolerance_are_too_coarse() {
 fn orders_for_eight_times_the_tolerance_are_too_few() {
     let mut broken = 0;
     for scene in scenes(60) {
-        let spec = Needs::new(&scene, &View::new(&scene)).curve_spec;
-        let coarser = CurveSpec {
-            tolerance: 8.0 * spec.tolerance,
-            ..spec
-        };
+        let (spec, coarser) = specs(&scene);
         let left_out = Isoradials::new(&coarser, &Exact).left_out();
         broken +=
             usize::from(left_out.is_some_and(|thin| thickness(&spec, thin.order) > spec.tolerance));

@@ -6,12 +6,11 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use darkness::scene::Scene;
 use tempfile::tempdir;
 
-use crate::harness::done;
+use crate::harness::{done, tool_prints};
 use crate::tools;
 
 const READER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reader/read_frame.py");
@@ -26,17 +25,7 @@ fn write_lit(path: &Path) {
 
 /// What the reader prints of a file: texts by their names, and channels by theirs.
 fn read(here: &Path, file: &str) -> (BTreeMap<String, String>, BTreeMap<String, String>) {
-    let output = Command::new("python3")
-        .arg(READER)
-        .arg(here.join(file))
-        .output()
-        .unwrap();
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let text = String::from_utf8(output.stdout).unwrap();
+    let text = String::from_utf8(tool_prints(here, &["python3", READER, file])).unwrap();
     let (mut texts, mut channels) = (BTreeMap::new(), BTreeMap::new());
     for line in text.lines() {
         if let Some((name, text)) = line.split_once(": ") {
@@ -120,15 +109,7 @@ fn openimageio_reads_channels_attributes_and_values() {
     let here = folder.path();
     write_lit(&here.join("lit.toml"));
     done(here, &["render", "lit.toml", "-o", "f.exr"]);
-    let run = |line: &[&str]| {
-        let output = Command::new(line[0])
-            .args(&line[1..])
-            .current_dir(here)
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{line:?}");
-        String::from_utf8(output.stdout).unwrap()
-    };
+    let run = |line: &[&str]| String::from_utf8(tool_prints(here, line)).unwrap();
     let told = run(&["iinfo", "-v", "f.exr"]);
     for words in [
         "96 x   54, 5 channel, float openexr",
