@@ -39,12 +39,9 @@ fn run(folder: &Path, (threads, tunables): (&str, Option<&str>), args: &[&str]) 
 /// file that it writes.
 fn same_bytes(folder: &Path, args: &[&str], file: Option<&str>) -> Vec<u8> {
     let bytes = |way| {
-        let output = [&["-o"], &file.as_slice()[..]].concat();
-        let printed = run(
-            folder,
-            way,
-            &[args, if file.is_some() { &output } else { &[] }].concat(),
-        );
+        let output = file.map(|file| ["-o", file]);
+        let all = [args, output.as_slice().as_flattened()].concat();
+        let printed = run(folder, way, &all);
         let Some(file) = file else {
             return printed;
         };
