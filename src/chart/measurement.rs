@@ -126,8 +126,9 @@ pub struct Measurement {
 /// The cost of an answer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Time {
-    /// Nanoseconds per ray; in panels [`Scene`](Panel::Scene) and [`Light`](Panel::Light), per pixel. This is RK4's median time divided by the ratio
-    /// below, because a drift of the machine's speed between rounds hardly changes ratios.
+    /// Nanoseconds per ray; in panels [`Scene`](Panel::Scene) and [`Light`](Panel::Light), per pixel. This is RK4's
+    /// median time divided by the ratio below, because a drift of the machine's speed between rounds hardly changes
+    /// ratios.
     pub nanoseconds: f64,
     /// The median over the rounds of RK4's time divided by this time. RK4 takes the
     /// [step](super::rays::RayPanel::baseline_step) at which the 99th percentile of its error is 1e-6.

@@ -16,6 +16,7 @@ mod csv;
 pub mod data;
 pub mod draw;
 mod exact_self_check;
+mod frame_times;
 pub mod interleaved;
 pub mod light;
 mod machine;

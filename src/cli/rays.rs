@@ -251,7 +251,8 @@ mod tests {
 
     #[test]
     fn columns_are_found_by_name_whatever_stands_around_them() {
-        let text = "\u{feff}# made by hand\r\n\r\n \"note\", dudphi ,\"u0\"\r\n\"a, b\", 1e-3 ,\" 0.25\"\r\n#x\n,-inf,.5\n,inf,5e-1";
+        let text = "\u{feff}# made by hand\r\n\r\n \"note\", dudphi ,\"u0\"\r\n\"a, b\", 1e-3 ,\" 0.25\"\r\n#x\n\
+                    ,-inf,.5\n,inf,5e-1";
         assert_eq!(
             read(text.as_bytes()),
             Ok(vec![

@@ -276,7 +276,8 @@ fn readable(message: &str) -> String {
 mod tests {
     use super::*;
 
-    const SHORTEST: &str = "[camera]\nposition = [20, 0, 5]\nfov = 40\n[disk]\ninner = 3\nouter = 12\n[image]\nwidth = 64\nheight = 36\n";
+    const SHORTEST: &str = "[camera]\nposition = [20, 0, 5]\nfov = 40\n[disk]\ninner = 3\nouter = 12\n\
+                            [image]\nwidth = 64\nheight = 36\n";
 
     fn message(text: &str) -> String {
         SceneFile::parse(text).unwrap_err().to_string()

@@ -238,8 +238,8 @@ mod tests {
     use super::super::Scene;
     use super::*;
 
-    const GOOD: &str = "[camera]\nposition = [20.0, 0.0, 5.0]\nfocus = [0.0, 0.0, 0.0]\nup = [0.0, 0.0, 1.0]\nfov = 40.0\n\
-                        [disk]\ninner = 3.0\nouter = 12.0\nnormal = [0.0, 0.0, 1.0]\n\
+    const GOOD: &str = "[camera]\nposition = [20.0, 0.0, 5.0]\nfocus = [0.0, 0.0, 0.0]\nup = [0.0, 0.0, 1.0]\n\
+                        fov = 40.0\n[disk]\ninner = 3.0\nouter = 12.0\nnormal = [0.0, 0.0, 1.0]\n\
                         [image]\nwidth = 64\nheight = 36\nantialias = false\ntolerance = 0.001\n";
 
     /// The good scene with the keys' values replaced.

@@ -193,7 +193,8 @@ impl View {
         self.level
     }
 
-    /// `√(1 − u0)`: the rate of the camera's clock, and the ratio of a light's frequency far away to that at the camera.
+    /// `√(1 − u0)`: the rate of the camera's clock, and the ratio of a light's frequency far away to that at the
+    /// camera.
     pub fn clock_rate(&self) -> f64 {
         // 1 − u0 = (r − 1)/r: r − 1 is exact for r < 2, where 1 − u0 would show the rounding of u0.
         ((self.radius - 1.0) / self.radius).sqrt()

@@ -6,13 +6,13 @@
 //!
 //! | chart | where | axes | stored | swept angle |
 //! |---|---|---|---|---|
-//! | critical | 0.64 ≤ 27e²/4 ≤ 3 | γ = √(u + 1/3), e | A(e), B(γ, e) | J = ±A ln((s + \|u̇\|)/√\|Δ\|) + \|u̇\|/(u + 0.28) B, a difference or a sum of two J |
+//! | critical | 0.64 ≤ 27e²/4 ≤ 3 | γ = √(u + 1/3), e | A(e), B(γ, e) | a difference or a sum of two J |
 //! | weak | 27e²/4 < 0.64, u < 2/3 | v = u/e, `t = √(1 − e/e_c)` | V(v, t) | to the periapsis: \|u̇\|/(e + u) V |
 //! | trapped | 27e²/4 < 0.64, u > 2/3 | u, t | Z(u, t) | to the apoapsis: \|u̇\|/(u − 0.39) Z |
 //! | radial | 27e²/4 > 3 | u, 1/e² | H(u, 1/e²) | difference of two H, over e |
 //!
-//! `Δ = e² − 4/27`, `e_c² = 4/27`. The borders are where the charts on both sides need equally many nodes, by
-//! measurement.
+//! `J = ±A ln((s + |u̇|)/√|Δ|) + |u̇|/(u + 0.28) B`, `Δ = e² − 4/27`, `e_c² = 4/27`. The borders are where the charts
+//! on both sides need equally many nodes, by measurement.
 //!
 //! # Derivation
 //! *Critical.* With `s = |u − 2/3| √(u + 1/3)` and its signed form `σ`, `P = σ² + Δ`. Near the photon sphere the

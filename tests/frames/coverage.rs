@@ -245,7 +245,8 @@ fn where_two_orders_edges_share_a_pixel() {
         (summed_squares / f64::from(count)).sqrt(),
     );
     println!(
-        "{count} pixels: root mean square {rms:.5}, worst {worst:.4}; sums would be off by {summed:.4}, {summed_worst:.4}"
+        "{count} pixels: root mean square {rms:.5}, worst {worst:.4}; sums would be off by {summed:.4}, \
+         {summed_worst:.4}"
     );
     assert!(
         count > 100 && summed_worst > 0.2,

@@ -182,11 +182,41 @@ fn is_grey(frame: &[u8]) -> bool {
     frame.iter().any(|value| (1..255).contains(value))
 }
 
+/// The greys of frames that were compared with their mirror images.
+#[derive(Default)]
+struct Alike {
+    unlike: usize,
+    greys: usize,
+}
+
+impl Alike {
+    /// Asserts that no value differs by more than one.
+    fn compare(&mut self, frame: &[u8], other: &[u8], of: &str) {
+        let most = frame.iter().zip(other).map(|(a, b)| a.abs_diff(*b)).max();
+        assert!(most <= Some(1), "{of}: {most:?} greys");
+        self.unlike += frame.iter().zip(other).filter(|(a, b)| a != b).count();
+        self.greys += frame
+            .iter()
+            .filter(|value| (1..255).contains(*value))
+            .count();
+    }
+
+    /// Asserts that fewer than one grey in so many differs.
+    fn assert_most_are(&self, one_in: usize) {
+        let Self { unlike, greys } = self;
+        println!("{unlike} of {greys} greys are not alike");
+        assert!(
+            unlike * one_in < *greys,
+            "{unlike} of {greys} greys are not alike"
+        );
+    }
+}
+
 /// Guards against a pixel's sides being treated unlike each other: left and right. The path's ends are rounded to a
 /// grid of 2⁻¹⁴ pixels, which has no mirror image, so that a share may be rounded to the next grey.
 #[test]
 fn left_and_right_are_alike_to_one_grey() {
-    let (mut unlike, mut greys) = (0, 0);
+    let mut alike = Alike::default();
     for (position, focus, fov) in [
         ("[29.5442, 0, 5.2094]", "[0, 0, 0]", 30.0),
         ("[29.5442, 0, -0.02]", "[0, 0, 0]", 30.0),
@@ -200,24 +230,11 @@ fn left_and_right_are_alike_to_one_grey() {
                 let frame = smooth(&picture);
                 assert!(is_grey(&frame), "{position}");
                 let other = mirrored(&frame, picture.width());
-                let most = frame.iter().zip(&other).map(|(a, b)| a.abs_diff(*b)).max();
-                assert!(
-                    most <= Some(1),
-                    "{position}, {outer}, {size:?}: {most:?} greys"
-                );
-                unlike += frame.iter().zip(&other).filter(|(a, b)| a != b).count();
-                greys += frame
-                    .iter()
-                    .filter(|value| (1..255).contains(*value))
-                    .count();
+                alike.compare(&frame, &other, &format!("{position}, {outer}, {size:?}"));
             }
         }
     }
-    println!("{unlike} of {greys} greys are not alike");
-    assert!(
-        unlike * 20 < greys,
-        "{unlike} of {greys} greys are not alike"
-    );
+    alike.assert_most_are(20);
 }
 
 /// Guards against the same between top and bottom; from within the disk's plane what is above it is what is below.
@@ -227,7 +244,7 @@ fn left_and_right_are_alike_to_one_grey() {
 /// two thousandths of a pixel times √2 at most, which is less than a grey.
 #[test]
 fn top_and_bottom_are_alike_to_one_grey_from_within_the_disks_plane() {
-    let (mut unlike, mut greys) = (0, 0);
+    let mut alike = Alike::default();
     for (position, focus, fov) in [
         ("[20, 0, 0]", "[0, 0, 0]", 40.0),
         ("[2, 0, 0]", "[0, 0, 0]", 150.0),
@@ -245,22 +262,10 @@ fn top_and_bottom_are_alike_to_one_grey_from_within_the_disks_plane() {
                     "{position}, {outer}, {size:?}"
                 );
                 let other = flipped(&frame, picture.width());
-                let most = frame.iter().zip(&other).map(|(a, b)| a.abs_diff(*b)).max();
-                assert!(
-                    most <= Some(1),
-                    "{position}, {outer}, {size:?}: {most:?} greys"
-                );
-                unlike += frame.iter().zip(&other).filter(|(a, b)| a != b).count();
-                greys += frame
-                    .iter()
-                    .filter(|value| (1..255).contains(*value))
-                    .count();
+                alike.compare(&frame, &other, &format!("{position}, {outer}, {size:?}"));
             }
         }
     }
     // Measured: 28 of 7,500. The splines are off by some 4e-4 pixels, a tenth of a grey, where they are worst.
-    assert!(
-        unlike * 50 < greys,
-        "{unlike} of {greys} greys are not alike"
-    );
+    alike.assert_most_are(50);
 }

@@ -94,8 +94,8 @@ fn redshift_and_emission_angle_equal_gyotos() {
     assert!(worst[0] <= 1e-7 && worst[1] <= 1e-7, "{worst:?}");
 }
 
-/// The numbers of each image in a FITS file whose images are of 64-bit floating-point numbers (FITS Standard 4.0, §3 and
-/// §4.4.1): blocks of 2880 bytes; a header of lines of 80 characters up to `END`, then big-endian numbers.
+/// The numbers of each image in a FITS file whose images are of 64-bit floating-point numbers (FITS Standard 4.0, §3
+/// and §4.4.1): blocks of 2880 bytes; a header of lines of 80 characters up to `END`, then big-endian numbers.
 #[expect(clippy::big_endian_bytes, reason = "FITS is big-endian")]
 fn images(file: &Path) -> Vec<Vec<f64>> {
     const BLOCK: usize = 2880;

@@ -92,8 +92,9 @@ fn any_scene() -> impl Strategy<Value = Scene> {
                 // From a lens that shows a share of the hole to one that shows the sky.
                 let fov = (libm::exp10(fov) * 2.0 * libm::atan(20.0 / r).to_degrees()).min(170.0);
                 let text = format!(
-                    "[camera]\nposition = [{:e}, 0, {:e}]\nfocus = [0, {aim_y}, {aim_z}]\nup = [0.1, 0.2, 1]\nfov = {fov:e}\n\
-                     [disk]\ninner = {inner}\nouter = {}\n[image]\nwidth = {}\nheight = {}\ntolerance = {:e}\n",
+                    "[camera]\nposition = [{:e}, 0, {:e}]\nfocus = [0, {aim_y}, {aim_z}]\nup = [0.1, 0.2, 1]\n\
+                     fov = {fov:e}\n[disk]\ninner = {inner}\nouter = {}\n\
+                     [image]\nwidth = {}\nheight = {}\ntolerance = {:e}\n",
                     r * cosine,
                     r * sine,
                     inner + libm::exp10(width),
@@ -152,17 +153,23 @@ fn scenes(count: usize) -> Vec<Scene> {
     (0..count).map(|_| scene()).collect()
 }
 
+/// What a scene needs of its curves, and the same for eight times the tolerance.
+fn specs(scene: &Scene) -> (CurveSpec, CurveSpec) {
+    let spec = Needs::new(scene, &View::new(scene)).curve_spec;
+    let coarser = CurveSpec {
+        tolerance: 8.0 * spec.tolerance,
+        ..spec
+    };
+    (spec, coarser)
+}
+
 /// What eight times the tolerance leaves of each choice breaks the tolerance itself in some scenes, so that none is
 /// padded by as much: the nodes.
 #[test]
 fn nodes_for_eight_times_the_tolerance_are_too_few() {
     let mut broken = 0;
     for scene in scenes(60) {
-        let spec = Needs::new(&scene, &View::new(&scene)).curve_spec;
-        let coarser = CurveSpec {
-            tolerance: 8.0 * spec.tolerance,
-            ..spec
-        };
+        let (spec, coarser) = specs(&scene);
         // Exact angles: what is off is the interpolation.
         let curves = Isoradials::new(&coarser, &Exact);
         broken += usize::from(displacement(&spec, &curves) > spec.tolerance);
@@ -202,11 +209,7 @@ fn tables_for_eight_times_the_tolerance_are_too_coarse() {
 fn orders_for_eight_times_the_tolerance_are_too_few() {
     let mut broken = 0;
     for scene in scenes(60) {
-        let spec = Needs::new(&scene, &View::new(&scene)).curve_spec;
-        let coarser = CurveSpec {
-            tolerance: 8.0 * spec.tolerance,
-            ..spec
-        };
+        let (spec, coarser) = specs(&scene);
         let left_out = Isoradials::new(&coarser, &Exact).left_out();
         broken +=
             usize::from(left_out.is_some_and(|thin| thickness(&spec, thin.order) > spec.tolerance));
@@ -219,8 +222,9 @@ fn orders_for_eight_times_the_tolerance_are_too_few() {
 /// that were looked at was 1.7 times that at them.
 #[test]
 fn a_curve_that_bends_within_few_cells_is_where_it_is_promised() {
-    let text = "[camera]\nposition = [4259.817226448193, 0.0, 817.7197334608541]\nfocus = [0.0, 7.89828043241121, 0.0]\n\
-                up = [0.1, 0.2, 1.0]\nfov = 0.1041519218669539\n[disk]\ninner = 3.0\nouter = 745.9971465163368\n\
+    let text = "[camera]\nposition = [4259.817226448193, 0.0, 817.7197334608541]\n\
+                focus = [0.0, 7.89828043241121, 0.0]\nup = [0.1, 0.2, 1.0]\n\
+                fov = 0.1041519218669539\n[disk]\ninner = 3.0\nouter = 745.9971465163368\n\
                 [image]\nwidth = 1920\nheight = 1080\ntolerance = 0.31622776601683794\n";
     let scene = Scene::from_toml(text).unwrap();
     let needs = Needs::new(&scene, &View::new(&scene));

@@ -78,7 +78,8 @@ proptest! {
 /// A scene's text, from what makes it hard.
 fn text(position: &str, focus: &str, up: &str, fov: &str, disk: &str, size: &str) -> String {
     format!(
-        "[camera]\nposition = [{position}]\nfocus = [{focus}]\nup = [{up}]\nfov = {fov}\n[disk]\n{disk}\n[image]\n{size}\n"
+        "[camera]\nposition = [{position}]\nfocus = [{focus}]\nup = [{up}]\nfov = {fov}\n[disk]\n{disk}\n\
+         [image]\n{size}\n"
     )
 }
 

@@ -12,7 +12,7 @@ use crate::harness::{PROGRAM, done, files, with_animation};
 use crate::tools;
 
 /// Commands that write a file of each kind into the folder `out`, where `{}` stands for the program.
-const WRITERS: [(&str, &str); 10] = [
+const WRITERS: [(&str, &str); 12] = [
     ("t.table", "{} table draft -o out/t.table"),
     ("deep", "{} table draft -o out/deep/t.table"),
     (
@@ -22,6 +22,14 @@ const WRITERS: [(&str, &str); 10] = [
     ("out", "{} render small.toml --size 960x540 -o out/f_##.png"),
     ("out", "{} render small.toml --size 960x540 -o out/f_##.exr"),
     ("out", "{} render small.toml --size 960x540 -o out/f_##.npz"),
+    (
+        "out",
+        "{} render lit-orbit --frames 1-2 --size 960x540 -o out/f_##.png",
+    ),
+    (
+        "out",
+        "{} render lit-orbit --frames 1-2 --size 960x540 --layers colour,radius -o out/f_##.exr",
+    ),
     ("a.y4m", "{} render small.toml -o out/a.y4m"),
     ("a.raw", "{} render small.toml -o out/a.raw"),
     (

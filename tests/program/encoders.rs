@@ -4,33 +4,20 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use tempfile::tempdir;
 
-use crate::harness::done;
+use crate::harness::{done, tool_prints, with_animation};
 use crate::tools;
 
 /// A mask of which most is white, seen from above the disk.
 const SCENE: &str = "[camera]\nposition = [1.0, 0.0, 10.0]\nfov = 60.0\n[disk]\ninner = 3.0\nouter = 12.0\n\
     [image]\nwidth = 320\nheight = 180\n";
 
-/// Runs a program, and returns its standard output.
-fn run(here: &Path, line: &[&str]) -> Vec<u8> {
-    let output = Command::new(line[0])
-        .args(&line[1..])
-        .current_dir(here)
-        .output();
-    let output = output.unwrap();
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{line:?}: {told}");
-    output.stdout
-}
-
 /// What ffprobe says of a film's first stream, a line for each of the entries.
 fn probed(here: &Path, film: &str) -> String {
-    let entries =
-        "stream=pix_fmt,color_range,color_space,color_transfer,color_primaries,r_frame_rate";
+    let entries = "stream=width,height,pix_fmt,color_range,color_space,color_transfer,color_primaries,r_frame_rate,\
+                   nb_frames";
     let line = [
         "ffprobe",
         "-v",
@@ -41,7 +28,7 @@ fn probed(here: &Path, film: &str) -> String {
         "default=nw=1",
         film,
     ];
-    String::from_utf8(run(here, &line)).unwrap()
+    String::from_utf8(tool_prints(here, &line)).unwrap()
 }
 
 fn assert_says(told: &str, entries: &[&str]) {
@@ -53,21 +40,14 @@ fn assert_says(told: &str, entries: &[&str]) {
     }
 }
 
+/// What ffmpeg writes to its standard output.
+fn ffmpeg(here: &Path, options: &[&str]) -> Vec<u8> {
+    tool_prints(here, &[&["ffmpeg", "-v", "error"], options].concat())
+}
+
 /// The Y, U and V planes of a film's first frame, as ffmpeg decodes them.
 fn decoded(here: &Path, film: &str) -> [Vec<u8>; 3] {
-    let line = [
-        "ffmpeg",
-        "-v",
-        "error",
-        "-i",
-        film,
-        "-frames:v",
-        "1",
-        "-f",
-        "rawvideo",
-        "-",
-    ];
-    let frame = run(here, &line);
+    let frame = ffmpeg(here, &["-i", film, "-frames:v", "1", "-f", "rawvideo", "-"]);
     assert_eq!(frame.len(), 320 * 180 * 3 / 2);
     let (luma, chroma) = frame.split_at(320 * 180);
     let (blue, red) = chroma.split_at(320 * 180 / 4);
@@ -159,7 +139,7 @@ fn encoders_take_a_film_and_their_streams_say_the_range() {
         if !tools::has(line[0]) || !tools::has("ffprobe") {
             continue;
         }
-        run(here, line);
+        tool_prints(here, line);
         let stream = line.iter().find(|word| {
             ["ivf", "hevc", "webm"]
                 .iter()
@@ -180,4 +160,64 @@ fn encoders_take_a_film_and_their_streams_say_the_range() {
             "{stream}"
         );
     }
+}
+
+#[test]
+fn the_command_in_the_readme_makes_a_film_with_the_right_range_and_colours() {
+    if !["ffmpeg", "ffprobe"].iter().all(|tool| tools::has(tool)) {
+        return;
+    }
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    let readme = include_str!("../../README.md");
+    let line = readme
+        .lines()
+        .find(|line| line.contains("-o orbit.mp4"))
+        .unwrap();
+    let small = line.replace("render orbit", "render orbit --size 320x180 --frames 1-24");
+    assert_ne!(small, line);
+    tool_prints(here, &["sh", "-c", &small]);
+    let entries = [
+        "width=320",
+        "height=180",
+        "pix_fmt=yuv420p",
+        "color_range=tv",
+        "color_space=bt709",
+        "color_transfer=bt709",
+        "color_primaries=bt709",
+        "r_frame_rate=24/1",
+        "nb_frames=24",
+    ];
+    assert_says(&probed(here, "orbit.mp4"), &entries);
+    // Converted back to grey from 0 to 255, it equals the frame up to the film's compression.
+    let options = "-i orbit.mp4 -vf scale=out_range=pc,format=gray -frames:v 1 -f rawvideo -";
+    let film = ffmpeg(here, &options.split(' ').collect::<Vec<_>>());
+    let options = "render orbit --size 320x180 --frames 1 --format raw -o -";
+    let (frame, _) = done(here, &options.split(' ').collect::<Vec<_>>());
+    assert_eq!(film.len(), frame.len());
+    let apart: u32 = film
+        .iter()
+        .zip(&frame)
+        .map(|(a, b)| u32::from(a.abs_diff(*b)))
+        .sum();
+    let mean = f64::from(apart) / frame.len() as f64;
+    assert!(mean < 2.0, "{mean} greys apart");
+    assert!(film.contains(&0) && film.contains(&255));
+}
+
+#[test]
+fn ffmpeg_reads_a_film_to_the_last_bit() {
+    if !tools::has("ffmpeg") {
+        return;
+    }
+    let folder = with_animation(30);
+    let here = folder.path();
+    for options in [
+        &["--format", "y4m-gray", "-o", "film.y4m"][..],
+        &["-o", "frames.raw"],
+    ] {
+        done(here, &[&["render", "small.toml"], options].concat());
+    }
+    let read = ffmpeg(here, &["-i", "film.y4m", "-f", "rawvideo", "-"]);
+    assert!(read == fs::read(here.join("frames.raw")).unwrap());
 }

@@ -8,30 +8,18 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use darkness::scene::Animation;
+use darkness::scene::{Animation, Scene};
 use tempfile::tempdir;
 
 use crate::harness::{PROGRAM, darkness, done, fails, files, listing, refused, with_animation};
 use crate::tools;
 
-/// Writes the scene of an orbit of 4 small frames around a disk with light.
-fn write_lit(path: &Path) {
-    let toml = Animation::load("orbit").unwrap().to_toml();
-    let toml = toml
-        .replace("frames = 240", "frames = 4")
-        .replace("width = 1920", "width = 96")
-        .replace("height = 1080", "height = 54");
-    let light = "[disk.light]\nmodel = \"blackbody\"\ntemperature = 7000.0\n\n[image]";
-    fs::write(path, toml.replace("[image]", light)).unwrap();
-}
-
 #[test]
 fn what_a_format_cannot_hold_is_refused_with_what_to_change() {
     let folder = tempdir().unwrap();
     let here = folder.path();
-    write_lit(&here.join("lit.toml"));
     let masks = ["render", "orbit"];
-    let lit = ["render", "lit.toml"];
+    let lit = ["render", "lit-orbit"];
     for (args, words) in [
         (
             &["--layers", "radius", "-o", "f_#.png"][..],
@@ -89,12 +77,12 @@ fn what_a_format_cannot_hold_is_refused_with_what_to_change() {
     ] {
         refused(here, &[&lit[..], args].concat(), 2, words);
     }
-    let wide = fs::read_to_string(here.join("lit.toml")).unwrap();
-    fs::write(
-        here.join("wide.toml"),
-        wide.replace("[image]", "[image]\nbits = 16"),
-    )
-    .unwrap();
+    let scene = Animation::load("lit-orbit").unwrap().to_toml();
+    let write = |name: &str, line: &str| {
+        fs::write(here.join(name), scene.replace("[image]", line)).unwrap();
+    };
+    write("wide.toml", "[image]\nbits = 16");
+    write("data.toml", "[image]\nlayers = [\"radius\"]");
     for film in ["f.y4m", "f.raw", "f.mov"] {
         refused(
             here,
@@ -103,7 +91,82 @@ fn what_a_format_cannot_hold_is_refused_with_what_to_change() {
             &["16", "image.bits = 8"],
         );
     }
-    assert_eq!(listing(here), ["lit.toml", "wide.toml"]);
+    for output in ["f_#.png", "f.y4m", "f.raw", "f.webm"] {
+        refused(
+            here,
+            &["render", "data.toml", "-o", output],
+            2,
+            &["no layers of data", ".exr or .npz"],
+        );
+    }
+    assert_eq!(listing(here), ["data.toml", "wide.toml"]);
+}
+
+#[test]
+fn light_that_makes_no_sense_is_refused_with_what_to_change() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    let scene = Scene::builtin("lit").unwrap().to_toml();
+    let (model, kelvin) = ("model = \"blackbody\"\n", "temperature = 7000.0");
+    let range = "100 to 1e9 kelvin";
+    for (line, other, words) in [
+        (
+            kelvin,
+            "temperature = 99.9",
+            &["disk.light.temperature = 99.9", range][..],
+        ),
+        (
+            kelvin,
+            "temperature = nan",
+            &["disk.light.temperature = NaN", range],
+        ),
+        (
+            kelvin,
+            "temperature = 1.1e9",
+            &["disk.light.temperature = 1100000000", range],
+        ),
+        (
+            model,
+            "",
+            &["disk.light.model is missing", "blackbody", "bolometric"],
+        ),
+        (
+            model,
+            "model = \"neon\"\n",
+            &["`neon`", "`blackbody`", "`bolometric`"],
+        ),
+        (
+            "[image]",
+            "[image]\nexposure = 100.5",
+            &["image.exposure = 100.5", "-100 to 100"],
+        ),
+        (
+            "[image]",
+            "[image]\nexposure = -inf",
+            &["image.exposure = -inf", "-100 to 100"],
+        ),
+        (
+            "[image]",
+            "[image]\nbits = 10",
+            &["image.bits = 10", "8 or 16"],
+        ),
+        (
+            "[image]",
+            "[image]\nlayers = [\"depth\"]",
+            &[
+                "depth",
+                "coverage, order, radius, azimuth, redshift, emission_cosine, temperature, colour",
+            ],
+        ),
+    ] {
+        assert_eq!(scene.matches(line).count(), 1, "{line}");
+        fs::write(here.join("bad.toml"), scene.replace(line, other)).unwrap();
+        for output in ["f.png", "f.exr", "f.npz", "f.y4m"] {
+            let words = [&["bad.toml"], words].concat();
+            refused(here, &["render", "bad.toml", "-o", output], 1, &words);
+        }
+    }
+    assert_eq!(listing(here), ["bad.toml"]);
 }
 
 #[test]
@@ -153,18 +216,35 @@ fn hard_masks_have_the_bits_that_are_asked_for() {
     assert_eq!(depth(&[]), 1);
 }
 
+/// Writes the animation of `small.toml` with light, and with hard edges, which take less time.
+fn write_lit(here: &Path) {
+    let light = "[disk.light]\nmodel = \"blackbody\"\ntemperature = 7000.0\n\n[image]";
+    let mask = fs::read_to_string(here.join("small.toml")).unwrap();
+    let hard = mask.replace("antialias = true", "antialias = false");
+    assert_ne!(hard, mask);
+    fs::write(here.join("lit.toml"), hard.replace("[image]", light)).unwrap();
+}
+
 #[test]
-fn a_rerun_draws_data_that_are_missing_damaged_or_of_another_scene() {
+fn a_rerun_draws_frames_that_are_missing_damaged_or_of_another_scene() {
     let folder = with_animation(9);
     let here = folder.path();
-    for extension in ["exr", "npz"] {
-        let pattern = format!("{extension}/f_##.{extension}");
+    write_lit(here);
+    for (scene, extension, other) in [
+        ("small.toml", "exr", ["--layers", "order"]),
+        ("small.toml", "npz", ["--layers", "order"]),
+        ("lit.toml", "exr", ["--layers", "order"]),
+        ("lit.toml", "npz", ["--layers", "order"]),
+        ("lit.toml", "png", ["--exposure", "1"]),
+        ("lit.toml", "png", ["--bits", "16"]),
+    ] {
+        let pattern = format!("{scene}_{extension}{}/f_##.{extension}", other[1]);
         let drawn = |args: &[&str]| {
-            let all = [&["render", "small.toml", "-o", &pattern], args].concat();
+            let all = [&["render", scene, "-o", &pattern], args].concat();
             done(here, &all).1
         };
         drawn(&[]);
-        let out = here.join(extension);
+        let out = here.join(&pattern).parent().unwrap().to_owned();
         let first = files(&out);
         assert_eq!(first.len(), 9);
         assert!(drawn(&[]).contains("all frames were finished before"));
@@ -179,30 +259,37 @@ fn a_rerun_draws_data_that_are_missing_damaged_or_of_another_scene() {
         }
         fs::write(out.join(name(6)), &first[&name(7)]).unwrap();
         fs::write(out.join(name(8)), &first[&name(8)][..100]).unwrap();
-        let dry = done(here, &["render", "small.toml", "-o", &pattern, "--dry-run"]).0;
+        let dry = done(here, &["render", scene, "-o", &pattern, "--dry-run"]).0;
         let dry = String::from_utf8(dry).unwrap();
         assert_eq!(dry.matches("to draw").count(), 7, "{dry}");
         assert!(drawn(&[]).contains("7 frames of"));
         assert!(files(&out) == first);
-        assert!(drawn(&["--layers", "order", "--frames", "1-2"]).contains("2 frames of"));
+        assert!(drawn(&[&other[..], &["--frames", "1-2"]].concat()).contains("2 frames of"));
         assert!(drawn(&[]).contains("2 frames of") && files(&out) == first);
     }
 }
 
 #[test]
-fn data_of_a_batch_that_is_killed_and_run_again_are_the_same() {
+fn frames_of_a_batch_that_is_killed_and_run_again_are_the_same() {
     let folder = with_animation(200);
     let here = folder.path();
-    for extension in ["exr", "npz"] {
-        let pattern = |folder: &str| format!("{folder}{extension}/f_###.{extension}");
-        let (whole, out) = (pattern("whole_"), pattern("out_"));
+    write_lit(here);
+    for (scene, extension) in [
+        ("small.toml", "exr"),
+        ("small.toml", "npz"),
+        ("lit.toml", "exr"),
+        ("lit.toml", "npz"),
+        ("lit.toml", "png"),
+    ] {
+        let [whole, out] = ["whole", "out"].map(|kind| format!("{kind}_{scene}_{extension}"));
+        let folder = here.join(&out);
+        let [whole, out] = [whole, out].map(|folder| format!("{folder}/f_###.{extension}"));
         let begun = Instant::now();
-        done(here, &["render", "small.toml", "-o", &whole]);
+        done(here, &["render", scene, "-o", &whole]);
         let time = begun.elapsed();
-        let whole = files(&here.join(format!("whole_{extension}")));
-        let folder = here.join(format!("out_{extension}"));
+        let whole = files(here.join(&whole).parent().unwrap());
         for moment in 1..5_u32 {
-            let mut child = darkness(here, &["render", "small.toml", "-q", "-o", &out])
+            let mut child = darkness(here, &["render", scene, "-q", "-o", &out])
                 .stderr(Stdio::null())
                 .spawn()
                 .unwrap();
@@ -215,7 +302,7 @@ fn data_of_a_batch_that_is_killed_and_run_again_are_the_same() {
             }
             let _ = fs::remove_file(folder.join(format!("f_{moment:03}.{extension}")));
         }
-        done(here, &["render", "small.toml", "-o", &out]);
+        done(here, &["render", scene, "-o", &out]);
         assert!(files(&folder) == whole);
     }
 }

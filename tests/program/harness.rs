@@ -1,6 +1,7 @@
 //! What the tests of the program share: ways to run it, and folders to run it in.
 
 use std::collections::BTreeMap;
+use std::env;
 use std::ffi::OsStr;
 use std::fs;
 use std::io::Write;
@@ -27,6 +28,28 @@ pub(crate) fn run(folder: &Path, args: &[&str]) -> (Output, String) {
     let output = darkness(folder, args).output().unwrap();
     let stderr = String::from_utf8(output.stderr.clone()).unwrap();
     (output, stderr)
+}
+
+/// Returns a command that runs another program in a folder. Its search path begins with the folder of the program under
+/// test, and ends with those of the system's daemons.
+pub(crate) fn tool(folder: &Path, line: &[&str]) -> Command {
+    let ours = Path::new(PROGRAM).parent().unwrap();
+    let others = env::var("PATH").unwrap_or_default();
+    let mut command = Command::new(line[0]);
+    command
+        .current_dir(folder)
+        .env(
+            "PATH",
+            format!("{}:{others}:/usr/sbin:/sbin", ours.display()),
+        )
+        .env_remove("DARKNESS_TABLE")
+        .args(&line[1..]);
+    command
+}
+
+/// Runs another program, expects it to succeed, and returns its standard output.
+pub(crate) fn tool_prints(folder: &Path, line: &[&str]) -> Vec<u8> {
+    finish(&mut tool(folder, line)).0
 }
 
 /// Runs the program, expects it to succeed, and returns its standard output.
@@ -78,15 +101,20 @@ pub(crate) fn run_briefly(folder: &Path, args: &[&OsStr]) -> Output {
         .unwrap()
 }
 
-/// A folder with an animation of so many small frames in `small.toml`, and a table.
-pub(crate) fn with_animation(frames: u32) -> TempDir {
-    let folder = tempdir().unwrap();
+/// Writes an animation of so many small frames.
+pub(crate) fn write_animation(path: &Path, frames: u32) {
     let toml = Animation::load("orbit").unwrap().to_toml();
     let toml = toml
         .replace("frames = 240", &format!("frames = {frames}"))
         .replace("width = 1920", "width = 96")
         .replace("height = 1080", "height = 54");
-    fs::write(folder.path().join("small.toml"), toml).unwrap();
+    fs::write(path, toml).unwrap();
+}
+
+/// A folder with an animation of so many small frames in `small.toml`, and a table.
+pub(crate) fn with_animation(frames: u32) -> TempDir {
+    let folder = tempdir().unwrap();
+    write_animation(&folder.path().join("small.toml"), frames);
     done(folder.path(), &["table", "draft"]);
     folder
 }

@@ -6,37 +6,20 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
-use darkness::scene::Scene;
 use tempfile::tempdir;
 
-use crate::harness::done;
+use crate::harness::{done, tool_prints};
 use crate::tools;
 
 const READER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reader/read_frame.py");
 
-/// Writes the scene of a small frame with light.
-fn write_lit(path: &Path) {
-    let scene = Scene::builtin("classic").unwrap();
-    let toml = scene.with_size(96, 54).unwrap().to_toml();
-    let light = "[disk.light]\nmodel = \"blackbody\"\ntemperature = 7000.0\n\n[image]";
-    fs::write(path, toml.replace("[image]", light)).unwrap();
-}
+/// A small frame with light.
+const LIT: [&str; 4] = ["render", "lit", "--size", "96x54"];
 
 /// What the reader prints of a file: texts by their names, and channels by theirs.
 fn read(here: &Path, file: &str) -> (BTreeMap<String, String>, BTreeMap<String, String>) {
-    let output = Command::new("python3")
-        .arg(READER)
-        .arg(here.join(file))
-        .output()
-        .unwrap();
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let text = String::from_utf8(output.stdout).unwrap();
+    let text = String::from_utf8(tool_prints(here, &["python3", READER, file])).unwrap();
     let (mut texts, mut channels) = (BTreeMap::new(), BTreeMap::new());
     for line in text.lines() {
         if let Some((name, text)) = line.split_once(": ") {
@@ -56,13 +39,10 @@ fn openexr_and_numpy_read_the_same_layers() {
     }
     let folder = tempdir().unwrap();
     let here = folder.path();
-    write_lit(&here.join("lit.toml"));
     let layers = "coverage,order,radius,azimuth,redshift,emission_cosine,temperature,colour";
     for file in ["all.exr", "all.npz"] {
-        done(
-            here,
-            &["render", "lit.toml", "--layers", layers, "-o", file],
-        );
+        let options = ["--layers", layers, "-o", file];
+        done(here, &[&LIT[..], &options].concat());
     }
     let (exr_texts, exr) = read(here, "all.exr");
     let (npz_texts, npz) = read(here, "all.npz");
@@ -93,13 +73,9 @@ fn openexr_and_numpy_read_the_same_layers() {
 
     // What is there if no layer is named.
     for (scene, file, names) in [
+        ("lit", "f.exr", &["A", "B", "G", "R", "disk.coverage"][..]),
         (
-            "lit.toml",
-            "f.exr",
-            &["A", "B", "G", "R", "disk.coverage"][..],
-        ),
-        (
-            "lit.toml",
+            "lit",
             "f.npz",
             &["colour.0", "colour.1", "colour.2", "coverage"],
         ),
@@ -118,17 +94,8 @@ fn openimageio_reads_channels_attributes_and_values() {
     }
     let folder = tempdir().unwrap();
     let here = folder.path();
-    write_lit(&here.join("lit.toml"));
-    done(here, &["render", "lit.toml", "-o", "f.exr"]);
-    let run = |line: &[&str]| {
-        let output = Command::new(line[0])
-            .args(&line[1..])
-            .current_dir(here)
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{line:?}");
-        String::from_utf8(output.stdout).unwrap()
-    };
+    done(here, &[&LIT[..], &["-o", "f.exr"]].concat());
+    let run = |line: &[&str]| String::from_utf8(tool_prints(here, line)).unwrap();
     let told = run(&["iinfo", "-v", "f.exr"]);
     for words in [
         "96 x   54, 5 channel, float openexr",

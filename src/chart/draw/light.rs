@@ -29,10 +29,10 @@ pub(super) fn draw(area: &PageArea<'_>, light: &LightPanel) -> Result<(), DrawEr
     let caption = format!(
         "{} at {} × {}, the disk as {source}, hard edges, whole frames in 8-bit colour on one thread.\n\
          Filled: from the map of the camera's radius; curves and map are built for each frame. Hollow, RK4, adaptive:\n\
-         along each pixel's ray, timed on an even sample. Marker: the largest error of the pixels that show the disk in\n\
-         the right order; whisker: from the 99th percentile. Luminance: what follows from radius and redshift. Wrong\n\
-         pixels: the share of {} (of slow methods fewer, see the CSV) that miss the disk, see it by mistake, or see\n\
-         another order.",
+         along each pixel's ray, timed on an even sample. Marker: the largest error of the pixels that show the disk\n\
+         in the right order; whisker: from the 99th percentile. Luminance: what follows from radius and redshift.\n\
+         Wrong pixels: the share of {} (of slow methods fewer, see the CSV) that miss the disk, see it by mistake, or\n\
+         see another order.",
         light.name,
         light.size.0,
         light.size.1,

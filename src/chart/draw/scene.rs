@@ -29,8 +29,8 @@ pub(super) fn draw(area: &PageArea<'_>, scene: &ScenePanel) -> Result<(), DrawEr
     let caption = format!(
         "{} at {} × {}, hard edges, whole frames on one thread. Tables and the exact method give isoradial curves,\n\
          right to the {:?} pixels allowed (line), and the frame is filled between them. Euler, RK4 and adaptive step\n\
-         along every pixel's ray, timed on an even sample. Displacement: the largest of an edge at {} angles; cross at\n\
-         the top: an edge was lost. Wrong pixels: the share of {} that differ from their exact rays; of slow\n\
+         along every pixel's ray, timed on an even sample. Displacement: the largest of an edge at {} angles; cross\n\
+         at the top: an edge was lost. Wrong pixels: the share of {} that differ from their exact rays; of slow\n\
          methods fewer are compared (see the CSV).",
         scene.name,
         scene.size.0,

@@ -14,9 +14,8 @@
 mod exact_sights;
 mod lit_methods;
 
-use core::time::Duration;
-
-use super::interleaved::{Contender, rounds};
+use super::frame_times::{FrameEffort, one_thread};
+use super::interleaved::Contender;
 use super::measurement::{ChartEffort, ChartError, ComparedMethod, Measurement, Panel, Time};
 use super::methods::Tables;
 use super::pixel_choice::sample;
@@ -73,40 +72,6 @@ impl LightPoint {
     }
 }
 
-/// How much is measured.
-struct LightEffort {
-    repetitions: usize,
-    /// The time after which no further repetition starts.
-    time: Duration,
-    /// The number of pixels on which methods that follow rays are timed.
-    sampled_pixels: u32,
-    /// The largest number of pixels to compute exactly.
-    compared_pixels: u64,
-    /// Seconds of one thread for computing one setting's pixels.
-    seconds: f64,
-}
-
-impl LightEffort {
-    fn of(effort: ChartEffort) -> Self {
-        match effort {
-            ChartEffort::Quick => Self {
-                repetitions: 5,
-                time: Duration::from_secs(3),
-                sampled_pixels: 1024,
-                compared_pixels: 1 << 17,
-                seconds: 0.15,
-            },
-            ChartEffort::Full => Self {
-                repetitions: 21,
-                time: Duration::from_secs(30),
-                sampled_pixels: 8192,
-                compared_pixels: 1 << 22,
-                seconds: 3.0,
-            },
-        }
-    }
-}
-
 impl LightPanel {
     /// Measures the lit frame of `scene`. `baseline_step` is the step of RK4 in `ratio_to_rk4`. `progress` receives the
     /// share that is done, from 0 to 1.
@@ -121,23 +86,18 @@ impl LightPanel {
         effort: ChartEffort,
         progress: &(dyn Fn(f64) + Sync),
     ) -> Result<Self, ChartError> {
-        let bounds = LightEffort::of(effort);
+        let bounds = FrameEffort::of(effort);
         let light = scene.light().unwrap_or(LIGHT);
         let scene = (*scene).with_antialias(false).with_light(Some(light))?;
         let view = View::new(&scene);
         let settings = settings(&scene, &view, tables, baseline_step, effort);
-        let one_thread = rayon::ThreadPoolBuilder::new()
-            .num_threads(1)
-            .build()
-            .map_err(|error| ChartError::Threads(error.to_string()))?;
-        let times = one_thread.install(|| time(&scene, light, &settings, &bounds, progress))?;
+        let times = one_thread()?.install(|| time(&scene, light, &settings, &bounds, progress))?;
         let truth = ExactSights::new(&scene, &view, light, bounds.compared_pixels)
             .map_err(RenderError::from)?;
         progress(0.6);
         let mut points = Vec::with_capacity(settings.len());
         for (i, (setting, time)) in settings.iter().zip(times).enumerate() {
-            let budget = (bounds.seconds * 1e9 / time.nanoseconds.max(1e-3)) as u64;
-            points.push(point(setting, time, &scene, &truth, budget)?);
+            points.push(point(setting, time, &scene, &truth, bounds.budget(time))?);
             progress(0.6 + 0.4 * (i + 1) as f64 / settings.len() as f64);
         }
         Ok(Self {
@@ -155,7 +115,7 @@ fn time(
     scene: &Scene,
     light: Light,
     settings: &[LitSetting<'_>],
-    bounds: &LightEffort,
+    bounds: &FrameEffort,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Vec<Time>, ChartError> {
     let sample = sample(&View::new(scene), bounds.sampled_pixels);
@@ -172,7 +132,7 @@ fn time(
             renderer().draw(scene, &mut frame)?;
         }
     }
-    let mut contenders: Vec<_> = settings
+    let contenders = settings
         .iter()
         .map(|setting| Contender {
             name: &setting.setting,
@@ -201,28 +161,12 @@ fn time(
             },
         })
         .collect();
-    let mut done = 0.0;
-    let times = rounds(
-        &mut contenders,
-        bounds.repetitions,
-        (Duration::from_millis(2), bounds.time),
-        &mut || {
-            done += 1.0;
-            progress(0.5 * done / (bounds.repetitions + 1) as f64);
-        },
-    );
-    drop(contenders);
     let items = |setting: &LitSetting<'_>| match setting.draws {
         LitMethod::Map(_) => pixels,
         LitMethod::Pixels(_) => sample.len() as f64,
     };
-    let settings = settings.iter().enumerate();
-    Ok(settings
-        .map(|(i, setting)| {
-            let ratio = times.ratio(i, 0) * items(setting) / sample.len() as f64;
-            Time::new(times.median(0) * 1e9 / sample.len() as f64, ratio)
-        })
-        .collect())
+    let items: Vec<f64> = settings.iter().map(items).collect();
+    Ok(bounds.times(contenders, &items, progress))
 }
 
 /// The same scene from a camera a little farther away.

@@ -10,9 +10,8 @@ mod edges;
 mod frame_methods;
 mod frames;
 
-use core::time::Duration;
-
-use super::interleaved::{Contender, rounds};
+use super::frame_times::{FrameEffort, one_thread};
+use super::interleaved::Contender;
 use super::measurement::{
     ChartEffort, ChartError, ComparedMethod, Measurement, Panel, Quantiles, Time,
 };
@@ -24,6 +23,9 @@ use crate::scene::{Scene, View};
 use edges::{Displacements, ExactEdges, ORDERS};
 use frame_methods::{FrameMethod, FrameSetting, settings, sources};
 use frames::ExactPixels;
+
+/// The number of angles φ₁ at which each edge is measured.
+const PLACES: u32 = 129;
 
 /// The measurements of a scene's frame.
 #[derive(Debug)]
@@ -78,44 +80,6 @@ impl FramePoint {
     }
 }
 
-/// How much is measured.
-struct SceneEffort {
-    repetitions: usize,
-    /// The time after which no further repetition starts.
-    time: Duration,
-    /// The number of pixels on which stepping methods are timed.
-    sampled_pixels: u32,
-    /// The largest number of pixels to compute exactly.
-    compared_pixels: u64,
-    /// The number of angles φ₁ at which each edge is measured.
-    places: u32,
-    /// Seconds of one thread for counting one setting's wrong pixels.
-    seconds: f64,
-}
-
-impl SceneEffort {
-    fn of(effort: ChartEffort) -> Self {
-        match effort {
-            ChartEffort::Quick => Self {
-                repetitions: 5,
-                time: Duration::from_secs(3),
-                sampled_pixels: 1024,
-                compared_pixels: 1 << 17,
-                places: 129,
-                seconds: 0.15,
-            },
-            ChartEffort::Full => Self {
-                repetitions: 21,
-                time: Duration::from_secs(40),
-                sampled_pixels: 8192,
-                compared_pixels: 1 << 22,
-                places: 129,
-                seconds: 3.0,
-            },
-        }
-    }
-}
-
 impl ScenePanel {
     /// Measures the frame of `scene`. `baseline_step` is the step of RK4 in `ratio_to_rk4`. `progress` receives the
     /// share that is done, from 0 to 1.
@@ -130,21 +94,17 @@ impl ScenePanel {
         effort: ChartEffort,
         progress: &(dyn Fn(f64) + Sync),
     ) -> Result<Self, ChartError> {
-        let bounds = SceneEffort::of(effort);
+        let bounds = FrameEffort::of(effort);
         let view = View::new(scene);
         let sources = sources(tables);
         let settings = settings(scene, &view, &sources, baseline_step, effort);
-        let one_thread = rayon::ThreadPoolBuilder::new()
-            .num_threads(1)
-            .build()
-            .map_err(|error| ChartError::Threads(error.to_string()))?;
-        let times = one_thread.install(|| time(scene, &view, &settings, &bounds, progress));
+        let times = one_thread()?.install(|| time(scene, &view, &settings, &bounds, progress));
         let truth = ExactPixels::new(scene, &view, bounds.compared_pixels)?;
         progress(0.6);
-        let edges = ExactEdges::new(scene, &view, bounds.places);
+        let edges = ExactEdges::new(scene, &view, PLACES);
         let mut points = Vec::with_capacity(settings.len());
         for (i, (setting, time)) in settings.iter().zip(times).enumerate() {
-            let budget = (bounds.seconds * 1e9 / time.nanoseconds.max(1e-3)) as u64;
+            let budget = bounds.budget(time);
             points.push(point(setting, time, scene, &view, &edges, &truth, budget)?);
             progress(0.6 + 0.4 * (i + 1) as f64 / settings.len() as f64);
         }
@@ -152,7 +112,7 @@ impl ScenePanel {
             name,
             size: (view.width(), view.height()),
             tolerance: scene.tolerance(),
-            places: bounds.places,
+            places: PLACES,
             compared: truth.pixels(),
             points,
         })
@@ -206,12 +166,12 @@ fn time(
     scene: &Scene,
     view: &View,
     settings: &[FrameSetting<'_>],
-    bounds: &SceneEffort,
+    bounds: &FrameEffort,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Vec<Time> {
     let sample = sample(view, bounds.sampled_pixels);
     let pixels = f64::from(view.width()) * f64::from(view.height());
-    let mut contenders: Vec<_> = settings
+    let contenders = settings
         .iter()
         .map(|setting| Contender {
             name: &setting.setting,
@@ -229,29 +189,13 @@ fn time(
             },
         })
         .collect();
-    let mut done = 0.0;
-    let times = rounds(
-        &mut contenders,
-        bounds.repetitions,
-        (Duration::from_millis(2), bounds.time),
-        &mut || {
-            done += 1.0;
-            progress(0.5 * done / (bounds.repetitions + 1) as f64);
-        },
-    );
     // Stepping methods, the baseline among them, run on the sample; curves render all pixels.
     let items = |setting: &FrameSetting<'_>| match setting.renders {
         FrameMethod::Curves { .. } => pixels,
         FrameMethod::Steps(_) => sample.len() as f64,
     };
-    settings
-        .iter()
-        .enumerate()
-        .map(|(i, setting)| {
-            let ratio = times.ratio(i, 0) * items(setting) / sample.len() as f64;
-            Time::new(times.median(0) * 1e9 / sample.len() as f64, ratio)
-        })
-        .collect()
+    let items: Vec<f64> = settings.iter().map(items).collect();
+    bounds.times(contenders, &items, progress)
 }
 
 /// Measures the errors of one setting. `budget` is the number of pixels that may be stepped.

@@ -1,6 +1,7 @@
 #!/bin/bash
 # A Slurm array job of @FRAMES@ frames of @TITLE@, @CHUNK@ a task, printed by darkness @VERSION@.
-# Make the table once, on a disk that all nodes share, then submit. Relative paths count from the folder of the submission:
+# Make the table once, on a disk that all nodes share, then submit. Relative paths count from the folder of the
+# submission:
 #   darkness table @TABLE_NAME@ -o @TABLE@
 #   sbatch @FILE@
 # Or make the table in a job too, with the frames after it:

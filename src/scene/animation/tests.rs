@@ -60,7 +60,8 @@ fn a_closed_orbit_does_not_repeat_its_first_frame_and_keeps_its_radius_to_the_la
 
 #[test]
 fn an_open_orbit_begins_at_from_and_ends_at_to() {
-    let text = "frames = 11\ninterpolation = \"linear\"\norbit = { radius = [60, 20], inclination = [0, 90], azimuth = [0, 360] }";
+    let text = "frames = 11\ninterpolation = \"linear\"\n\
+                orbit = { radius = [60, 20], inclination = [0, 90], azimuth = [0, 360] }";
     let orbit = animation("", text).unwrap();
     let place = |number| orbit.frame(number).unwrap().camera().position;
     assert_eq!(place(1), DVec3::new(0.0, 0.0, 60.0));
@@ -247,7 +248,8 @@ fn what_cannot_be_is_refused_with_its_frame() {
 fn orbits_that_cannot_be_are_refused_with_their_frame() {
     let orbit = |radius, inclination| {
         format!(
-            "frames = 41\ninterpolation = \"linear\"\norbit = {{ radius = {radius}, inclination = {inclination}, azimuth = 0 }}"
+            "frames = 41\ninterpolation = \"linear\"\n\
+             orbit = {{ radius = {radius}, inclination = {inclination}, azimuth = 0 }}"
         )
     };
     refused("", &orbit("[40, 0.5]", "30"), &["frame 41", "horizon"]);

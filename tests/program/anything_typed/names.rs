@@ -3,11 +3,9 @@
 use std::ffi::OsStr;
 use std::fs;
 use std::os::unix::ffi::OsStrExt;
-use std::path::Path;
-use std::process::Command;
 
 use super::{is_sentence, typed, words};
-use crate::harness::{PROGRAM, done, files, refused, with_animation};
+use crate::harness::{done, files, finish, refused, tool, with_animation};
 
 #[test]
 fn ranges_that_make_no_sense_are_refused_and_the_longest_are_accepted() {
@@ -200,20 +198,8 @@ fn names_that_look_like_options_or_patterns_are_taken_as_names() {
         ],
     );
     fs::write(here.join("job.sh"), script).unwrap();
-    let bin = Path::new(PROGRAM).parent().unwrap();
-    let path = format!("{}:{}", bin.display(), std::env::var("PATH").unwrap());
-    let output = Command::new("bash")
-        .current_dir(here)
-        .env("PATH", path)
-        .env("SLURM_ARRAY_TASK_ID", "0")
-        .arg("job.sh")
-        .output()
-        .unwrap();
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    let mut job = tool(here, &["bash", "job.sh"]);
+    finish(job.env("SLURM_ARRAY_TASK_ID", "0"));
     assert!(here.join("-o_2.png").is_file());
     let (code, said) = typed(here, &words(&["render", "\u{1b}[31m.toml"]));
     assert_eq!(code, 1);

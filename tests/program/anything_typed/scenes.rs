@@ -100,10 +100,14 @@ fn value(good: &'static [&'static str]) -> impl Strategy<Value = String> {
         150 => proptest::sample::select(good).prop_map(str::to_owned),
         2 => number().prop_map(str::to_owned),
         2 => (number(), number(), number()).prop_map(|(x, y, z)| format!("[{x}, {y}, {z}]")),
-        1 => (number(), number()).prop_map(|(from, to)| format!("{{ radius = [{from}, {to}], inclination = {to}, azimuth = 0 }}")),
+        1 => (number(), number()).prop_map(|(from, to)| {
+            format!("{{ radius = [{from}, {to}], inclination = {to}, azimuth = 0 }}")
+        }),
         1 => any::<f64>().prop_map(|number| format!("{number:?}")),
         1 => proptest::sample::select(&OTHERS[..]).prop_map(str::to_owned),
-        1 => (1..3000_usize, any::<bool>()).prop_map(|(depth, closed)| "[".repeat(depth) + &"]".repeat(if closed { depth } else { 0 })),
+        1 => (1..3000_usize, any::<bool>()).prop_map(|(depth, closed)| {
+            "[".repeat(depth) + &"]".repeat(if closed { depth } else { 0 })
+        }),
         1 => (1..30_000_usize).prop_map(|many| format!("[{}]", "1,".repeat(many))),
         1 => (1..300_000_usize).prop_map(|long| "9".repeat(long)),
     ]

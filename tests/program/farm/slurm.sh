@@ -185,5 +185,6 @@ child=
 # how each task ended (slurmctld forgets jobs only after 5 minutes)
 scontrol -o show job 2>/dev/null |
   sed 's/^JobId=[^ ]* ArrayJobId=\([^ ]*\) ArrayTaskId=\([^ ]*\) /JobId=\1_\2 /' |
-  sed -n 's/^JobId=\([^ ]*\).* JobName=\([^ ]*\) .* JobState=\([^ ]*\) .* ExitCode=\([^ ]*\) RunTime=\([^ ]*\) .*/slurm.sh: job \1 \2 \3 \4 \5/p' >&2
+  sed -nE 's/^JobId=(\S*).* JobName=(\S*) .* JobState=(\S*) .* ExitCode=(\S*) RunTime=(\S*) .*/\1 \2 \3 \4 \5/p' |
+  sed 's/^/slurm.sh: job /' >&2
 exit "$status"
