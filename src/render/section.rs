@@ -1,6 +1,6 @@
-//! The section of a square across a direction: a trapezium.
+//! The section of a rectangle across a direction: a trapezium.
 
-/// The section of a pixel's square across a direction.
+/// The section of a rectangle of the picture across a direction.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Section {
     /// From the centre to the farthest corner, and to the nearer corner.
@@ -9,9 +9,9 @@ pub(super) struct Section {
 }
 
 impl Section {
-    /// Across a unit vector, of a square of this side.
-    pub(super) fn new((x, y): (f64, f64), side: f64) -> Self {
-        let (x, y) = (side * x.abs(), side * y.abs());
+    /// Across a unit vector, of a rectangle of this width and height.
+    pub(super) fn new((x, y): (f64, f64), (width, height): (f64, f64)) -> Self {
+        let (x, y) = (width * x.abs(), height * y.abs());
         Self {
             far: 0.5 * (x + y),
             near: 0.5 * (x - y).abs(),
@@ -28,7 +28,7 @@ impl Section {
         }
     }
 
-    /// The share of the square below a distance.
+    /// The share of the rectangle below a distance.
     pub(super) fn share_below(self, distance: f64) -> f64 {
         let t = distance.clamp(-self.far, self.far);
         let beyond = (t.abs() - self.near).max(0.0);

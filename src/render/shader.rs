@@ -24,16 +24,24 @@ pub(super) struct Shader<'a> {
     /// Whether the camera is in the disk's plane.
     pub(super) is_in_plane: bool,
     pub(super) flux: &'static FluxSpline,
-    /// Partly covered pixels are taken apart into so many parts a side.
-    pub(super) fineness: usize,
+    /// Whether the light may change within a pixel in more than one direction.
+    pub(super) is_coarse: bool,
+    /// A partly covered pixel is cut at least into so many parts a side.
+    pub(super) least_parts: usize,
 }
 
-/// Pixels in a Schwarzschild radius at the hole's distance, below which partly covered pixels are taken apart: there
-/// the light changes much within a pixel.
-const FINE: f64 = 24.0;
+/// From nearer than this the hole looks as large as from here, about.
+const CLOSE: f64 = 3.0;
 
-/// The most parts a side.
-const FINEST: f64 = 48.0;
+/// Pixels are coarse if they are longer than this share of a Schwarzschild radius at the hole's distance.
+const COARSE: f64 = 1.0 / 24.0;
+
+/// A partly covered pixel is cut into parts that are shorter than this share of a Schwarzschild radius at the hole's
+/// distance.
+const LONGEST_PART: f64 = 0.4;
+
+/// But into no more than so many a side.
+const MOST_PARTS: f64 = 32.0;
 
 /// A ray of the picture.
 #[derive(Debug, Clone, Copy)]
@@ -53,11 +61,11 @@ impl<'a> Shader<'a> {
         map: &'a RadiusMap,
         gaps: Gaps<'a>,
     ) -> Self {
+        let pixel = view.pixel_side() * view.radius().max(CLOSE);
         Self {
             flux: FluxSpline::shared(),
-            fineness: (FINE * view.pixel_side() * view.radius())
-                .ceil()
-                .clamp(1.0, FINEST) as usize,
+            is_coarse: pixel > COARSE,
+            least_parts: (pixel / LONGEST_PART).ceil().clamp(1.0, MOST_PARTS) as usize,
             view,
             curves,
             map,
@@ -186,7 +194,7 @@ impl<'a> Shader<'a> {
         let slope = (x * x + y * y).sqrt();
         let distance = -f / slope;
         if distance.abs() < 1.0 {
-            1.0 - Section::new((x / slope, y / slope), 1.0).share_below(distance)
+            1.0 - Section::new((x / slope, y / slope), (1.0, 1.0)).share_below(distance)
         } else {
             f64::from(u8::from(f > 0.0))
         }
