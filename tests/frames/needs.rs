@@ -130,7 +130,7 @@ proptest! {
 
 /// The same over many more scenes.
 #[test]
-#[ignore = "takes some minutes: see the README's table of long tests"]
+#[ignore = "takes some minutes: see tests/README.md"]
 fn edges_are_where_they_are_promised_in_many_scenes() {
     let scenes = scenes(10_000);
     let worst = scenes.par_iter().map(|scene| {
