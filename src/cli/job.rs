@@ -62,14 +62,14 @@ pub(super) fn run(args: &JobArgs, report: Report) -> anyhow::Result<()> {
     for number in (1..=frames).step_by(frames.div_ceil(LOOKED_AT) as usize) {
         animation.check(number)?;
     }
-    let needs = Needs::of_animation(&animation)?;
+    let (output, form) = render::sequence(&args.scene, &animation, args.output.as_deref())?;
+    let needs = Needs::of_animation(&animation, form)?;
     let table_name = needs.table().map_or("fine", |candidate| candidate.name);
     if needs.table().is_none() {
         report.note("no table is good enough for some of these frames; fine is the best there is");
     }
     let default = || table::default_path(table_name);
     let table = args.table.clone().unwrap_or_else(default);
-    let output = render::sequence(&args.scene, &animation, args.output.as_deref())?;
     let [scene, table, output] = [&args.scene, &table, &output].map(|path| text(path));
     let (scene, table, output) = (scene?, table?, output?);
 

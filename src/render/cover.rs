@@ -152,14 +152,7 @@ impl Cells {
         let (first, last) = (from.x >> BITS, to.x >> BITS);
         let height = to.y - from.y;
         if first == last && (first as u64) < self.width as u64 {
-            let twice_left = (from.x + to.x) - (first << (BITS + 1));
-            self.add(
-                row,
-                first as usize,
-                weight,
-                height,
-                area(height, twice_left),
-            );
+            self.cover_in_pixel((first, row), from.x + to.x, height, weight);
         } else {
             self.cover_across(row, (from.x, to.x), height, weight);
         }
@@ -193,15 +186,8 @@ impl Cells {
             } else {
                 nearest(slope * (next - from) as f64)
             };
-            let (part, left) = (total - covered, at.clamp(0, right) + next.clamp(0, right));
-            let column = column.clamp(0, right >> BITS);
-            self.add(
-                row,
-                column as usize,
-                weight,
-                part,
-                area(part, left - (column << (BITS + 1))),
-            );
+            let (part, x) = (total - covered, at.clamp(0, right) + next.clamp(0, right));
+            self.cover_in_pixel((column.clamp(0, right >> BITS), row), x, part, weight);
             if is_last {
                 return;
             }
@@ -216,16 +202,8 @@ impl Cells {
         if row != to.y >> BITS {
             self.cover_down(from, to, weight);
         } else if (row as u64) < self.rows as u64 && from.y != to.y {
-            let column = from.x >> BITS;
-            let twice_left = (from.x + to.x) - (column << (BITS + 1));
-            let height = to.y - from.y;
-            self.add(
-                row as usize,
-                column as usize,
-                weight,
-                height,
-                area(height, twice_left),
-            );
+            let pixel = (from.x >> BITS, row as usize);
+            self.cover_in_pixel(pixel, from.x + to.x, to.y - from.y, weight);
         }
     }
 
@@ -256,17 +234,24 @@ impl Cells {
                 x: if y == to.y { to.x } else { x_at(y) },
                 y,
             };
-            let twice_left = (at.x + next.x) - (column << (BITS + 1));
-            let height = next.y - at.y;
-            self.add(
-                row as usize,
-                column as usize,
-                weight,
-                height,
-                area(height, twice_left),
-            );
+            self.cover_in_pixel((column, row as usize), at.x + next.x, next.y - at.y, weight);
             at = next;
         }
+    }
+
+    /// Adds a chord that goes down by `height` in one pixel, a column and a row: the area to its right. `twice_x` is
+    /// the sum of its ends' x.
+    #[inline(always)]
+    fn cover_in_pixel(
+        &mut self,
+        (column, row): (i64, usize),
+        twice_x: i64,
+        height: i64,
+        weight: i32,
+    ) {
+        let twice_right = ((column + 1) << (BITS + 1)) - twice_x;
+        let area = (height * twice_right + ONE) >> (BITS + 1);
+        self.add(row, column as usize, weight, height, area);
     }
 }
 
@@ -279,11 +264,4 @@ fn steps(arc: &EdgeArc) -> i64 {
         off *= 0.25;
     }
     steps
-}
-
-/// The area right of a chord of some height, twice the share of the pixel's width to its left in the mean.
-#[inline(always)]
-fn area(height: i64, twice_share: i64) -> i64 {
-    let right = 2 * ONE - twice_share;
-    (height * right + ONE) >> (BITS + 1)
 }

@@ -8,7 +8,11 @@
 //! [`sensitivity`] of the scene's curves. So the smallest table that promises `δφ ≤ T/(2S)` is enough. S is small where
 //! pixels are large: for `classic` at 1920 × 1080 an edge moves by 0.4 rad for each radian of φ, and a pixel is
 //! 4.8e-4 rad. The photon rings need less: S falls by `e^{−π}` with each order.
+//!
+//! Light and data ([`Form::needs_map`]) have no tolerance in pixels: their promise, radii within 1e-6 of themselves, is
+//! that of the standard table, so that a frame that shows them takes no coarser one.
 
+use super::planes::Form;
 use crate::isoradial::{CurveSpec, sensitivity};
 use crate::orbit::exact::Exact;
 use crate::scene::{Animation, Scene, SceneError, View};
@@ -32,21 +36,28 @@ pub struct Candidate {
     pub name: &'static str,
     /// The most that its error moves an edge, in pixels.
     pub displacement: f64,
-    /// Whether that is at most half of the scene's tolerance.
+    /// Whether that is at most half of the scene's tolerance, and the table is fine enough for light and data where the
+    /// frame shows them.
     pub is_enough: bool,
 }
 
 impl Needs {
-    /// Computes what `scene` needs.
-    pub fn new(scene: &Scene, view: &View) -> Self {
+    /// Computes what `scene` needs for a frame in some form.
+    pub fn new(scene: &Scene, view: &View, form: Form) -> Self {
         let spec = CurveSpec::new(scene, view, scene.tolerance());
         let sensitivity = sensitivity(&spec, &Exact);
+        let coarsest = if form.needs_map() {
+            Spec::standard().tolerance
+        } else {
+            f64::INFINITY
+        };
         let candidate = |name| {
-            let displacement = sensitivity * Spec::named(name)?.tolerance;
+            let error = Spec::named(name)?.tolerance;
+            let displacement = sensitivity * error;
             Some(Candidate {
                 name,
                 displacement,
-                is_enough: displacement <= 0.5 * spec.tolerance,
+                is_enough: displacement <= 0.5 * spec.tolerance && error <= coarsest,
             })
         };
         Self {
@@ -61,7 +72,7 @@ impl Needs {
     ///
     /// # Errors
     /// Returns the error of the first of these frames if none of them can be built.
-    pub fn of_animation(animation: &Animation) -> Result<Self, SceneError> {
+    pub fn of_animation(animation: &Animation, form: Form) -> Result<Self, SceneError> {
         const SAMPLED: u64 = 9;
         let last = u64::from(animation.frames());
         let mut most: Option<Self> = None;
@@ -81,7 +92,7 @@ impl Needs {
                     continue;
                 }
             };
-            let needs = Self::new(&scene, &View::new(&scene));
+            let needs = Self::new(&scene, &View::new(&scene), form);
             if most
                 .as_ref()
                 .is_none_or(|most| needs.sensitivity > most.sensitivity)

@@ -18,7 +18,7 @@ use darkness::orbit::exact::Exact;
 use darkness::orbit::path::SweptAngles;
 use darkness::orbit::{Event, EventKind, Orbits, Ray};
 use darkness::render::needs::Needs;
-use darkness::render::{coverage, mask};
+use darkness::render::{Form, coverage, mask};
 use darkness::scene::{Animation, Scene, View};
 use darkness::table::{Spec, Table};
 
@@ -107,7 +107,7 @@ pub(crate) fn scene(bytes: &[u8]) {
     let back = Animation::from_toml(&written).unwrap();
     assert_eq!(back.to_toml(), written);
     let small = animation.with_size(24, 16).unwrap();
-    if let Err(error) = Needs::of_animation(&small) {
+    if let Err(error) = Needs::of_animation(&small, Form::Grey8) {
         sentence(&error);
     }
     let last = small.frames();

@@ -5,13 +5,16 @@ use core::alloc::{GlobalAlloc, Layout};
 use core::sync::atomic::{AtomicU64, Ordering};
 use std::alloc::System;
 
+use darkness::Renderer;
 use darkness::cli::FrameRange;
 use darkness::isoradial::{CurveSpec, Isoradials};
 use darkness::orbit::exact::Exact;
-use darkness::render::Form;
-use darkness::render::batch::{self, Curved, DrawnFrame, Sharing};
+use darkness::render::batch::{self, Curved, DrawnFrame, Frames, Sharing};
 use darkness::render::frame::{Threads, Workspace};
-use darkness::scene::{Animation, Scene, View};
+use darkness::render::{Form, FrameMemory};
+use darkness::scene::{Animation, Layer, Scene, View};
+
+use crate::tables;
 
 struct Counting;
 
@@ -83,4 +86,59 @@ pub(crate) fn frames_take_no_memory_once_warm() {
         );
         assert!(all <= some + 10, "{some} for 20 frames, {all} for 240");
     });
+}
+
+/// A lit disk so wide that some rays meet it where the map of the radius has a gap. Most of them are at smooth edges.
+const WIDE: &str = "[camera]\nposition = [30, 0, 5]\nfov = 60\n[disk]\ninner = 3\nouter = 1e9\n\
+    [disk.light]\nmodel = \"blackbody\"\ntemperature = 7000\n[image]\nwidth = 8\nheight = 4\n";
+
+/// Light and data, on one thread: still scenes through a renderer, and steps of an orbit through a batch's frames.
+pub(crate) fn lit_frames_take_no_memory_once_warm() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    pool.unwrap().install(|| {
+        let layers = Layer::NAMED.into_iter().chain([Layer::Alpha]).collect();
+        for form in [Form::Rgb8, Form::Rgb16, Form::Layers(layers)] {
+            for smooth in [false, true] {
+                still_frames(form, smooth);
+                steps_of_an_orbit(form, smooth);
+            }
+        }
+    });
+}
+
+fn still_frames(form: Form, smooth: bool) {
+    let small = |name| Scene::builtin(name).unwrap().with_size(96, 54).unwrap();
+    let wide = Scene::from_toml(WIDE).unwrap();
+    for (name, scene) in [
+        ("lit", small("lit")),
+        ("rings", small("rings")),
+        ("wide", wide),
+    ] {
+        let scene = scene.with_antialias(smooth);
+        let mut renderer = Renderer::new(tables::table("standard"));
+        let mut memory = FrameMemory::new(form);
+        let mut draw = || {
+            let report = renderer.draw(&scene, &mut memory).unwrap();
+            assert!(!report.ray_by_ray, "{name}");
+        };
+        assert!(count(&mut draw) > 0);
+        assert_eq!(count(draw), 0, "{name}, {form:?}, smooth {smooth}");
+    }
+}
+
+fn steps_of_an_orbit(form: Form, smooth: bool) {
+    let orbit = Animation::load("lit-orbit").unwrap();
+    let orbit = orbit.with_size(96, 54).unwrap();
+    let orbit = orbit.with_antialias(smooth).unwrap();
+    let angles = tables::table("standard").lookup();
+    let frames = Curved::new(&orbit, &angles);
+    let (mut workspace, mut memory) = (Workspace::default(), FrameMemory::new(form));
+    let mut draw = || {
+        for number in (1..=240).step_by(48) {
+            let drawn = frames.draw(number, true, &mut workspace, &mut memory);
+            assert!(!drawn.unwrap().ray_by_ray);
+        }
+    };
+    assert!(count(&mut draw) > 0);
+    assert_eq!(count(draw), 0, "lit-orbit, {form:?}, smooth {smooth}");
 }

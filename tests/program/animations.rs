@@ -284,6 +284,8 @@ fn a_job_writes_the_files_that_render_writes_and_refuses_others_in_the_same_word
     let toml = fs::read_to_string(here.join("small.toml")).unwrap();
     let layered = toml.replace("[image]", "[image]\nlayers = [\"radius\"]");
     fs::write(here.join("layered.toml"), layered).unwrap();
+    // What data need.
+    done(here, &["table", "standard"]);
     let program = Path::new(env!("CARGO_BIN_EXE_darkness")).parent().unwrap();
     let path = std::env::join_paths([program, Path::new("/usr/bin"), Path::new("/bin")]).unwrap();
     for (args, files_of_render) in [

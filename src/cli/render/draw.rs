@@ -7,7 +7,7 @@ pub(super) use crate::render::batch::DrawnFrame;
 use crate::render::batch::{self, Curved, Frames, RayByRay, Sharing};
 use crate::render::needs::Needs;
 pub(super) use crate::render::{Form, FrameReport};
-use crate::scene::{Animation, Scene, View};
+use crate::scene::Animation;
 
 /// Draws the frames of an animation by some method, in some form.
 pub(super) struct FrameSource<'a> {
@@ -50,11 +50,6 @@ impl FrameSource<'_> {
         let sharing = Sharing::fastest(count, at_a_time);
         batch::draw(self.frames, self.form, numbers, sharing, wanted, done)
     }
-}
-
-/// What a scene needs of a table and of its curves.
-pub(super) fn needs(scene: &Scene) -> Needs {
-    Needs::new(scene, &View::new(scene))
 }
 
 /// The curves of a scene that needs `needs`, by a method that draws curves.

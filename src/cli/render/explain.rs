@@ -14,7 +14,7 @@ use super::{draw, form, options};
 use crate::isoradial::{Isoradials, RadiusMap};
 use crate::render::Form;
 use crate::render::needs::{Candidate, Needs};
-use crate::scene::{Animation, ImageSize, Scene};
+use crate::scene::{Animation, ImageSize, Scene, View};
 
 /// Prints what one frame needs.
 ///
@@ -33,7 +33,7 @@ pub(super) fn run(
     }
     let scene = animation.frame(frames.iter().next().unwrap_or(1))?;
     let form = form::expected(args, animation)?;
-    let needs = draw::needs(&scene);
+    let needs = Needs::new(&scene, &View::new(&scene), form);
     let needed = needs.table().map(|candidate| candidate.name);
     let checked = args.method.check(needed)?;
     start_threads(args.threads.threads)?;
@@ -153,6 +153,9 @@ fn text(
 fn judgement(candidate: &Candidate, needs: &Needs) -> String {
     let chosen = needs.table().map(|table| table.name) == Some(candidate.name);
     let verdict = match (candidate.is_enough, chosen) {
+        (false, _) if candidate.displacement <= 0.5 * needs.curve_spec.tolerance => {
+            "enough for edges, not for light and data"
+        }
         (false, _) => "not enough",
         (true, true) => "enough",
         (true, false) => "more than enough",

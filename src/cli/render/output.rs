@@ -12,6 +12,7 @@ use super::super::writable::{self, OUTPUT};
 use super::args::RenderArgs;
 use super::form;
 use super::format::Format;
+use crate::render::Form;
 use crate::scene::Animation;
 
 /// The digits of the frame's number in a default name.
@@ -123,7 +124,7 @@ fn of_pictures(
     Err(frames_without_number(&path, count))
 }
 
-/// The files of an animation's frames: `output`, or the default name in the folder `frames`.
+/// The files of an animation's frames, `output` or the default name in the folder `frames`, and their pixels.
 ///
 /// # Errors
 /// It has no place for the frame's number, or the format of its extension cannot hold the frames.
@@ -131,18 +132,18 @@ pub(in crate::cli) fn sequence(
     scene: &Path,
     animation: &Animation,
     output: Option<&Path>,
-) -> anyhow::Result<PathBuf> {
+) -> anyhow::Result<(PathBuf, Form)> {
     let default = || Path::new("frames").join(default_name(scene, animation, None));
     let path = output.map_or_else(default, Path::to_path_buf);
     let format = Format::of(&path);
     if format.is_film() || !has_extension(&path, format.extension()) {
         return Err(unsupported_extension(&path, Format::SEQUENCE_EXTENSIONS));
     }
-    form::of(animation, format)?;
+    let form = form::of(animation, format)?;
     if Pattern::parse(&path)?.is_none() {
         return Err(frames_without_number(&path, animation.frames().into()));
     }
-    Ok(path)
+    Ok((path, form))
 }
 
 /// The error of one name for several frames.

@@ -49,7 +49,7 @@ impl<'a> Plan<'a> {
         let (format, destination) = output::checked(args, animation, count)?;
         let form = form::checked(args, animation, format)?;
         memory::check(args.max_memory, animation.image(), form)?;
-        let needs = Needs::of_animation(animation)?;
+        let needs = Needs::of_animation(animation, form)?;
         let needed = needs.table().map(|candidate| candidate.name);
         let mut inputs = vec![(args.scene.clone(), "scene")];
         inputs.extend(args.method.table_path(needed).map(|table| (table, "table")));

@@ -91,6 +91,18 @@ fn a_picture_takes_the_smallest_table_that_is_good_enough() {
             assert!(explained.contains(words), "no {words} in:\n{explained}");
         }
     }
+    // Light and data need the standard table's accuracy whatever the edges do.
+    for lit in [&["lit"][..], &["classic", "--layers", "radius"]] {
+        let explain = ["render", "--explain", "--size", SMALL];
+        let explained = printed(here, &[&explain[..], lit].concat());
+        for words in [
+            "table       standard (tables/standard.table), error ",
+            " pixels, enough for edges, not for light and data\n",
+            " pixels, enough\n",
+        ] {
+            assert!(explained.contains(words), "no {words} in:\n{explained}");
+        }
+    }
     let finest = ["render", "--size", SMALL, "--tolerance", "1e-10"];
     let (_, stderr) = done(here, &finest);
     assert!(stderr.contains("exact curves"), "{stderr}");
