@@ -54,7 +54,7 @@ impl Radiance {
     }
 
     /// An upper bound of d ln(luminance)/d ln y at `y`.
-    fn slope(&self, y: f64) -> f64 {
+    pub(crate) fn slope(&self, y: f64) -> f64 {
         match self.0 {
             // exp(−w/T) falls with the Wien exponent of the longest visible wavelength at low temperatures, of the
             // middle of the visible at high ones; T ∝ √y halves the slope.

@@ -15,13 +15,17 @@ use super::shader::{PlaceRay, Shader};
 use crate::isoradial::Boundary;
 
 /// A line may be this far from the true share.
-const WRONG: f64 = 0.05;
+const WRONG: f64 = 0.1;
 
 /// Where x changes by more than this within a pixel, one line is not enough.
 const FAST: f64 = 0.08;
 
-/// A pixel's light may be off by this share of it, and by this much of the hottest ring's.
-const RELATIVE: f64 = 0.0005;
+/// A pixel's light may be off by this share of it, where pixels are fine or coarse: of a small picture each one has much
+/// of the whole light.
+const FINE: f64 = 0.01;
+const COARSE: f64 = 0.0005;
+
+/// And by this much of the hottest ring's light.
 const ABSOLUTE: f64 = 1e-5;
 
 /// Where no edge is near, light may change along a line by this multiple of what it may be off.
@@ -172,7 +176,8 @@ impl<'a> Mixture<'a> {
             line
         } else {
             let about = share * line.mean_size();
-            let allowed = RELATIVE * about + ABSOLUTE;
+            let relative = if shader.is_coarse { COARSE } else { FINE };
+            let allowed = relative * about + ABSOLUTE;
             let parts = shader.least_parts;
             if parts == 1 {
                 self.refined(order, line, allowed, &colour)
@@ -313,14 +318,19 @@ impl<'a> Mixture<'a> {
                 (light, (weight * section.length(t)) as f32)
             };
             let is_thin = to - from > THIN * (high.distance - low.distance);
-            let two = TWO.map(at);
-            let [(a, _), (b, _)] = two;
-            let mean = if is_thin || is_steep(a, b) {
-                mean(FIVE.map(at))
-            } else {
-                mean(two)
-            };
-            total.change = total.change.max(apart(a, b));
+            let (mut mean, mut change) = (None, 0.0);
+            if !is_thin {
+                let two = TWO.map(at);
+                let [(a, _), (b, _)] = two;
+                change = apart(a, b);
+                mean = (!is_steep(a, b)).then(|| mean_of(two));
+            }
+            let mean = mean.unwrap_or_else(|| {
+                let five = FIVE.map(at);
+                change = apart(five[0].0, five[4].0);
+                mean_of(five)
+            });
+            total.change = total.change.max(change);
             total.add(
                 Total {
                     light: mean,
@@ -439,7 +449,7 @@ impl Total {
 }
 
 /// The mean of light with weights.
-fn mean<const N: usize>(nodes: [([f32; 3], f32); N]) -> [f32; 3] {
+fn mean_of<const N: usize>(nodes: [([f32; 3], f32); N]) -> [f32; 3] {
     let (mut sum, mut weights) = ([0.0; 3], 0.0);
     for (light, weight) in nodes {
         for (sum, c) in sum.iter_mut().zip(light) {
@@ -464,6 +474,9 @@ fn is_steep(a: [f32; 3], b: [f32; 3]) -> bool {
 
 /// An angular momentum that light at u can have: no ray has a greater impact parameter than `1/(u √(1 − u))` there.
 fn limited(lambda: f64, u: f64) -> f64 {
+    if lambda.abs() * u <= 1.0 {
+        return lambda;
+    }
     let most = 1.0 / (u * (1.0 - u).sqrt());
     lambda.clamp(-most, most)
 }

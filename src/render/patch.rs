@@ -220,11 +220,11 @@ impl<const N: usize> Patch<N> {
     fn measured_steepness(&self, nodes: &[f64; N], quantity: usize) -> f64 {
         let values = &self.values[quantity];
         let (mut across, mut down) = (0.0, 0.0);
-        for i in 1..N {
-            let apart = 1.0 / (nodes[i - 1] - nodes[i]);
-            for k in 0..N {
-                across = f64::max(across, (values[k][i] - values[k][i - 1]).abs() * apart);
-                down = f64::max(down, (values[i][k] - values[i - 1][k]).abs() * apart);
+        for (i, pair) in nodes.windows(2).enumerate() {
+            let apart = 1.0 / (pair[0] - pair[1]);
+            for (row, (a, b)) in values.iter().zip(values[i].iter().zip(&values[i + 1])) {
+                across = f64::max(across, (row[i] - row[i + 1]).abs() * apart);
+                down = f64::max(down, (a - b).abs() * apart);
             }
         }
         f64::max(across * self.per_pixel.0, down * self.per_pixel.1)

@@ -25,6 +25,7 @@ mod coverage;
 mod coverage_frames;
 mod coverage_rings;
 mod extreme_cameras;
+mod grazing;
 mod gyoto;
 mod light;
 mod light_average;

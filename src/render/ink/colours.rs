@@ -16,6 +16,8 @@ pub(in crate::render) struct Colours {
     pub(in crate::render) radiance: RadianceTable,
     pub(in crate::render) display: DisplayTransform,
     pub(in crate::render) palette: Palette,
+    /// How fast the logarithm of the hottest ring's light changes with its amplitude.
+    slope: f64,
 }
 
 /// Linear light of pixels of a row, side by side, at most as many as a tile has columns.
@@ -24,12 +26,26 @@ pub(super) type RowLight = [[f32; 3]; TILE.0];
 impl Colours {
     /// Prepares the colours of a scene with light.
     pub(in crate::render) fn new(light: Light, exposure: f64, tone: Tone) -> Self {
-        let radiance = RadianceTable::new(&Radiance::new(light));
+        let exact = Radiance::new(light);
+        let radiance = RadianceTable::new(&exact);
         let display = DisplayTransform::new(exposure, tone);
         Self {
             palette: Palette::new(&radiance, &display),
             radiance,
             display,
+            slope: exact.slope(1.0),
+        }
+    }
+
+    /// Returns over how many places a side of a pixel its light is averaged. The last quantity of the patch is the
+    /// amplitude.
+    pub(super) fn parts<const N: usize>(&self, patch: &Patch<N>, averaging: Averaging) -> usize {
+        match (averaging, self.slope * patch.steepness()) {
+            (Averaging::Centre, _) => 1,
+            (Averaging::Square, flat) if flat <= FLAT => 1,
+            (Averaging::Square, steep) if steep <= STEEP => 2,
+            (Averaging::Square, steep) if steep <= 2.0 * STEEP => 4,
+            (Averaging::Square, _) => MOST_PARTS,
         }
     }
 
@@ -101,26 +117,12 @@ pub(in crate::render) enum Averaging {
 /// The most places a side of a pixel over which its light is averaged.
 const MOST_PARTS: usize = 8;
 
-/// Where the amplitude changes by less than this from a pixel to the next, the light of the centre is the mean: it is
-/// off by about `L″ δ²/24` where the amplitude changes by δ, with L″ some 10, so by 1e-3 of the hottest ring's light.
-const FLAT: f64 = 0.05;
+/// Where the light's logarithm changes by less than this from a pixel to the next, the light of the centre is the mean: it
+/// is off by about `δ²/24` of itself where the logarithm changes by δ.
+const FLAT: f64 = 0.2;
 
 /// Two places a side, at ±1/√12, are exact to the fourth power of the change. They do up to this change.
-const STEEP: f64 = 0.3;
-
-impl Averaging {
-    /// Returns over how many places a side of a pixel its light is averaged. The last quantity of the patch is the
-    /// amplitude.
-    pub(super) fn parts<const N: usize>(self, patch: &Patch<N>) -> usize {
-        match (self, patch.steepness()) {
-            (Self::Centre, _) => 1,
-            (Self::Square, flat) if flat <= FLAT => 1,
-            (Self::Square, steep) if steep <= STEEP => 2,
-            (Self::Square, steep) if steep <= 2.0 * STEEP => 4,
-            (Self::Square, _) => MOST_PARTS,
-        }
-    }
-}
+const STEEP: f64 = 0.8;
 
 /// Returns where the i-th of `parts` places of a pixel's side is, from its middle: pairs of Gauss's places.
 fn offset(i: usize, parts: usize) -> f64 {

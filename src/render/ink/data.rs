@@ -337,7 +337,7 @@ impl Ink<NODES> for Data<'_> {
             };
             if layer == Layer::Colour {
                 if let Some(colours) = self.colours {
-                    let parts = self.averaging.parts(patch);
+                    let parts = colours.parts(patch, self.averaging);
                     let light = colours.of_row((patch, place), (from, to), y, parts);
                     let (pixels, _) = pixels.as_chunks_mut::<3>();
                     pixels.copy_from_slice(&light[..pixels.len()]);

@@ -121,7 +121,7 @@ impl<T: Code> Ink<NODES> for Display<'_, T> {
         patch: &Patch<NODES>,
     ) {
         let pixels = band.colours(row, from, to);
-        let parts = self.averaging.parts(patch);
+        let parts = self.colours.parts(patch, self.averaging);
         if parts > 1 {
             let light = self.colours.of_row((patch, 0), (from, to), y, parts);
             for (pixel, light) in pixels.iter_mut().zip(light) {
@@ -152,9 +152,9 @@ impl<T: Code> Ink<NODES> for Display<'_, T> {
         let ray = shader.ray(place);
         let u = shader.u_on_disk(order, &ray);
         let amplitude = shader.amplitude(u, shader.lambda(&ray));
-        let light = self.colours.radiance.rgb(amplitude as f32);
         let (row, column) = pixel;
-        band.colours(row, column, column + 1)[0] = T::displayed(&self.colours.display, light);
+        let pixel = band.colours(row, column, column + 1);
+        T::set(pixel, self.colours, &[amplitude as f32]);
     }
 
     fn put_mixture(
