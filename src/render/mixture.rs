@@ -369,9 +369,8 @@ impl<'a> Mixture<'a> {
             return Some((order, ray));
         }
         // The edge is too bent for its slope to lead there. So places all over the pixel are tried.
-        const SIDE: usize = 32;
-        let offset = |i: usize| (i as f64 + 0.5) / SIDE as f64 - 0.5;
-        let places = (0..SIDE * SIDE).map(|i| (offset(i % SIDE), offset(i / SIDE)));
+        let offset = |i: usize| (i as f64 + 0.5) / TRIED as f64 - 0.5;
+        let places = (0..TRIED * TRIED).map(|i| (offset(i % TRIED), offset(i / TRIED)));
         let found = places.filter_map(|(right, down)| {
             let ray = self.shader.ray((self.place.0 + right, self.place.1 + down));
             let front = self.shader.front(&ray)?;
@@ -415,6 +414,9 @@ impl<'a> Mixture<'a> {
         self.shader.shadow(self.place)
     }
 }
+
+/// Places a side of a pixel that are tried where no slope leads to the disk.
+const TRIED: usize = 32;
 
 /// Light over the covered part of an area, and how much of it is covered, both as shares of the area.
 #[derive(Debug, Clone, Copy, Default)]
