@@ -7,8 +7,8 @@
 //! the distance `−f/|∇f|` from the centre.
 //!
 //! That holds where x hardly changes within the pixel and edges are straight there. How much of the square is covered
-//! is known from the cells, so that a line that tells something else is found out. Then the square is halved, along
-//! the axis that changes the mean, until halves change it no more.
+//! is known from the cells, so that a line that tells something else is found out. Then the square is halved until
+//! halves change its light no more, each time along the axis that changes it most. Coarse pixels always are.
 
 use super::section::Section;
 use super::shader::{PlaceRay, Shader};
@@ -20,8 +20,8 @@ const WRONG: f64 = 0.1;
 /// Where x changes by more than this within a pixel, one line is not enough.
 const FAST: f64 = 0.08;
 
-/// A pixel's light may be off by this share of it, where pixels are fine or coarse: of a small picture each one has much
-/// of the whole light.
+/// A pixel's light may be off by this share of it, where pixels are fine or coarse: each pixel of a small picture has
+/// much of the whole light.
 const FINE: f64 = 0.01;
 const COARSE: f64 = 0.0005;
 
@@ -177,13 +177,7 @@ impl<'a> Mixture<'a> {
         } else {
             let about = share * line.mean_size();
             let relative = if shader.is_coarse { COARSE } else { FINE };
-            let allowed = relative * about + ABSOLUTE;
-            let parts = shader.least_parts;
-            if parts == 1 {
-                self.refined(order, line, allowed, &colour)
-            } else {
-                self.in_parts(order, parts, allowed, &colour)
-            }
+            self.in_parts(order, relative * about + ABSOLUTE, &colour)
         };
         if total.covered > 0.0 {
             return total.light.map(|c| c / total.covered as f32);
@@ -191,21 +185,14 @@ impl<'a> Mixture<'a> {
         let (_, ray) = self
             .nearest_covered_by(Some(order))
             .unwrap_or((order, self.ray));
-        let u = self.shader.u_on_disk(order, &ray);
-        colour(
-            self.shader
-                .amplitude(u, limited(self.shader.lambda(&ray), u)),
-        )
+        let u = shader.u_on_disk(order, &ray);
+        colour(shader.amplitude(u, limited(shader.lambda(&ray), u)))
     }
 
-    /// Returns what [`Self::refined`] returns, cut into so many parts a side at least.
-    fn in_parts(
-        &self,
-        order: u32,
-        parts: usize,
-        allowed: f64,
-        colour: &impl Fn(f64) -> [f32; 3],
-    ) -> Total {
+    /// Returns what an order shows of the pixel, cut into as many parts as the view asks for, each of them
+    /// [refined](Self::refined).
+    fn in_parts(&self, order: u32, allowed: f64, colour: &impl Fn(f64) -> [f32; 3]) -> Total {
+        let parts = self.shader.least_parts;
         let side = 1.0 / parts as f64;
         let offset = |i: usize| (i as f64 + 0.5) * side - 0.5;
         let mut total = Total::default();
@@ -280,6 +267,7 @@ impl<'a> Mixture<'a> {
     fn along_line(&self, order: u32, colour: &impl Fn(f64) -> [f32; 3]) -> Total {
         let mut total = Total::default();
         if self.ray.s <= 0.0 {
+            total.change = f32::INFINITY;
             return total;
         }
         if self.x_change() > FAST {

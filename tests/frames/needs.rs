@@ -220,8 +220,8 @@ fn orders_for_eight_times_the_tolerance_are_too_few() {
     assert!(broken > 0);
 }
 
-/// Data keep the promise of the standard table, radii within 1e-6 of themselves, where the edges of a small picture would
-/// be right with the draft table. Far out the angles' errors move the radius most.
+/// Data keep the promise of the standard table, radii within 1e-6 of themselves, where the edges of a small picture
+/// would be right with the draft table. Far out the angles' errors move the radius most.
 #[test]
 fn data_of_small_pictures_take_the_standard_table() {
     let text = "[camera]\nposition = [30, 0, 5]\nfov = 60\n[disk]\ninner = 3\nouter = 1e6\n\

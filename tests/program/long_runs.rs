@@ -92,7 +92,7 @@ fn memory_and_open_files_are_the_same_for_many_frames_as_for_few() {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "takes some minutes: see tests/README.md"]
 fn memory_and_open_files_are_the_same_for_a_hundred_thousand_frames() {
     is_flat(1000, 100_000);
 }

@@ -14,7 +14,7 @@ use wide::{i16x8, i32x4, u8x16};
 pub(super) const BLACK: u8 = 16;
 pub(super) const NO_COLOUR: u8 = 128;
 
-/// The columns that are converted together. Measured: with fewer, the bookkeeping costs; with more, fewer are all black.
+/// The columns that are converted together. With fewer, the bookkeeping costs. With more, fewer blocks are all black.
 const COLUMNS: usize = 128;
 
 /// Red and blue of a pixel, or sums of them, in the lower and the upper half of a word.

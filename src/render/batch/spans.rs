@@ -140,8 +140,8 @@ mod tests {
 
     #[test]
     fn a_lens_that_grows_long_gets_curves_of_its_own() {
-        let zoom = "[camera]\nposition = [20, 0, 5]\nfov = 64\n[disk]\ninner = 3\nouter = 12\n[image]\nwidth = 64\nheight = 36\n\
-            [animation]\nframes = 100\ninterpolation = \"linear\"\n\
+        let zoom = "[camera]\nposition = [20, 0, 5]\nfov = 64\n[disk]\ninner = 3\nouter = 12\n\
+            [image]\nwidth = 64\nheight = 36\n[animation]\nframes = 100\ninterpolation = \"linear\"\n\
             [[animation.keyframe]]\nframe = 1\nfov = 64\n[[animation.keyframe]]\nframe = 100\nfov = 4\n";
         let spans = spans(&Animation::from_toml(zoom).unwrap());
         assert!((4..=6).contains(&spans.len()), "{spans:?}");

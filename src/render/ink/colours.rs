@@ -117,8 +117,8 @@ pub(in crate::render) enum Averaging {
 /// The most places a side of a pixel over which its light is averaged.
 const MOST_PARTS: usize = 8;
 
-/// Where the light's logarithm changes by less than this from a pixel to the next, the light of the centre is the mean: it
-/// is off by about `δ²/24` of itself where the logarithm changes by δ.
+/// Where the light's logarithm changes by less than this from a pixel to the next, the light of the centre is the mean.
+/// It is off by about `δ²/24` of itself where the logarithm changes by δ.
 const FLAT: f64 = 0.2;
 
 /// Two places a side, at ±1/√12, are exact to the fourth power of the change. They do up to this change.
