@@ -20,12 +20,7 @@ const WRONG: f64 = 0.1;
 /// Where x changes by more than this within a pixel, one line is not enough.
 const FAST: f64 = 0.08;
 
-/// A pixel's light may be off by this share of it, where pixels are fine or coarse: each pixel of a small picture has
-/// much of the whole light.
-const FINE: f64 = 0.01;
-const COARSE: f64 = 0.0005;
-
-/// And by this much of the hottest ring's light.
+/// Beside [`Shader::light_tolerance`] a pixel's light may be off by this much of the hottest ring's.
 const ABSOLUTE: f64 = 1e-5;
 
 /// Where no edge is near, light may change along a line by this multiple of what it may be off.
@@ -176,8 +171,7 @@ impl<'a> Mixture<'a> {
             line
         } else {
             let about = share * line.mean_size();
-            let relative = if shader.is_coarse { COARSE } else { FINE };
-            self.in_parts(order, relative * about + ABSOLUTE, &colour)
+            self.in_parts(order, shader.light_tolerance * about + ABSOLUTE, &colour)
         };
         if total.covered > 0.0 {
             return total.light.map(|c| c / total.covered as f32);

@@ -26,6 +26,8 @@ pub(super) struct Shader<'a> {
     pub(super) flux: &'static FluxSpline,
     /// Whether the light may change within a pixel in more than one direction.
     pub(super) is_coarse: bool,
+    /// The share of its light that a partly covered pixel may be off by, where one line does not do.
+    pub(super) light_tolerance: f64,
     /// A partly covered pixel is cut at least into so many parts a side.
     pub(super) least_parts: usize,
 }
@@ -35,6 +37,10 @@ const CLOSE: f64 = 3.0;
 
 /// Pixels are coarse if they are longer than this share of a Schwarzschild radius at the hole's distance.
 const COARSE: f64 = 1.0 / 24.0;
+
+/// A fine pixel's light may be off by this share of it, a coarse one's by less: it has more of the whole light.
+const FINE: f64 = 0.01;
+const FINEST: f64 = 0.0005;
 
 /// A partly covered pixel is cut into parts that are shorter than this share of a Schwarzschild radius at the hole's
 /// distance.
@@ -62,9 +68,11 @@ impl<'a> Shader<'a> {
         gaps: Gaps<'a>,
     ) -> Self {
         let pixel = view.pixel_side() * view.radius().max(CLOSE);
+        let fineness = COARSE / pixel;
         Self {
             flux: FluxSpline::shared(),
-            is_coarse: pixel > COARSE,
+            is_coarse: fineness < 1.0,
+            light_tolerance: (FINE * fineness * fineness * fineness).clamp(FINEST, FINE),
             least_parts: (pixel / LONGEST_PART).ceil().clamp(1.0, MOST_PARTS) as usize,
             view,
             curves,
