@@ -88,12 +88,7 @@ impl CurveSpec {
 
     /// Returns κ of the critical ray. It is positive (towards the hole) outside the photon sphere, negative inside.
     pub fn critical(&self) -> f64 {
-        let size = critical_slope(self.u0) / self.slope_scale;
-        if three_u_minus_two(self.u0) < 0.0 {
-            size
-        } else {
-            -size
-        }
+        critical_kappa(self.u0, self.slope_scale)
     }
 
     /// Returns `1/(p cos² min(psi + a, c))`: the most pixels in a radian, for rays at most `psi` radians from the
@@ -114,5 +109,15 @@ impl CurveSpec {
     pub(super) fn h_range(&self) -> (f64, f64) {
         let (low, high) = self.window.kappa;
         (low - self.critical(), high - self.critical())
+    }
+}
+
+/// Returns κ of the critical ray at inverse radius `u0`, where `slope_scale` is `u0 √(1 − u0)`.
+pub(super) fn critical_kappa(u0: f64, slope_scale: f64) -> f64 {
+    let size = critical_slope(u0) / slope_scale;
+    if three_u_minus_two(u0) < 0.0 {
+        size
+    } else {
+        -size
     }
 }

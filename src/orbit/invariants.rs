@@ -74,7 +74,7 @@ impl Orbit {
 
     /// Returns du/dφ at the start.
     #[inline]
-    pub(super) fn start_slope(&self) -> f64 {
+    pub(crate) fn start_slope(&self) -> f64 {
         if self.inward {
             self.start.slope
         } else {
