@@ -65,7 +65,7 @@ mod solve;
 pub(crate) use chebyshev::Chebyshev;
 pub use curve_spec::CurveSpec;
 pub use edge::{Edge, EdgeError};
-pub use escape::{Escape, EscapeCurve};
+pub use escape::{Escape, EscapeCurve, Image};
 pub use isoradials::{ImageOrder, Isoradials, OmittedOrder};
 pub(crate) use outline::{Boundary, Sector};
 pub(crate) use radius_map::PlaneMeeting;

@@ -52,6 +52,8 @@ mod scene_frame;
 mod section;
 mod shaded;
 mod shader;
+mod shadow;
+mod tiles;
 
 pub use error::RenderError;
 pub use planes::{Form, FrameMemory, Pixels, Plane};

@@ -74,13 +74,13 @@ impl<const N: usize> PatchFit<N> {
     /// `false` where it cannot.
     ///
     /// # Errors
-    /// A [`Misfit`] unless each quantity is right to about `tolerance` times its greatest size.
+    /// A [`Misfit`] unless each quantity is right to about what is `allowed` at its greatest size.
     pub(super) fn fit(
         &self,
         patch: &mut Patch<N>,
         (from, to): ((f64, f64), (f64, f64)),
         quantities: usize,
-        tolerance: f64,
+        allowed: impl Fn(f64) -> f64,
         mut evaluate: impl FnMut((f64, f64), &mut [f64; MOST_QUANTITIES]) -> bool,
     ) -> Result<(), Misfit> {
         let half = |from: f64, to: f64| (0.5 * (to - from)).max(0.5);
@@ -106,7 +106,7 @@ impl<const N: usize> PatchFit<N> {
                     let size = row
                         .iter()
                         .fold(0.0, |size: f64, value| size.max(value.abs()));
-                    worst(off, share(self.left(&row), tolerance * size))
+                    worst(off, share(self.left(&row), allowed(size)))
                 });
                 is_within(off, 0.0, N)?;
             }
@@ -114,7 +114,7 @@ impl<const N: usize> PatchFit<N> {
         let (mut off_x, mut off_y) = (0.0, 0.0);
         for values in &patch.values[..quantities] {
             let size = values.as_flattened().iter();
-            let allowed = tolerance * size.fold(0.0, |size: f64, value| size.max(value.abs()));
+            let allowed = allowed(size.fold(0.0, |size: f64, value| size.max(value.abs())));
             let (mut left_x, mut left_y) = (0.0, 0.0);
             for k in 0..N {
                 left_x = worst(left_x, self.left(&values[k]));

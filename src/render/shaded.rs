@@ -10,10 +10,11 @@ use super::banded::{BandScratch, BandedOutline};
 use super::cells::{Cells, ONE};
 use super::frame::{Threads, on_threads};
 use super::ink::{Ink, Part};
-use super::painter::{Painter, Partial, Run, TILE};
+use super::painter::{Painter, Partial};
 use super::path::OutlinePath;
 use super::projection::Projection;
 use super::shader::Shader;
+use super::tiles::{Run, TILE};
 use crate::isoradial::Boundary;
 
 /// A band is a row of tiles.

@@ -2,10 +2,10 @@
 
 use super::centre::front;
 use super::flux_spline::FluxSpline;
-use super::section::Section;
+use super::shadow;
 use crate::isoradial::{Isoradials, PlaneMeeting, RadiusMap};
 use crate::light::{SightGeometry, redshift};
-use crate::scene::{Affine, PixelRay, View};
+use crate::scene::{PixelRay, View};
 
 /// Finds the inverse radius at which a ray with `κ − κ_c = h` meets the disk's plane in an order, where the map has a
 /// gap.
@@ -190,22 +190,7 @@ impl<'a> Shader<'a> {
 
     /// Returns the share of a pixel's square that the hole's shadow covers, the pixel's centre at a place.
     pub(super) fn shadow(&self, place: (f64, f64)) -> f64 {
-        // The shadow is where f = z − κ_c s is positive.
-        let ray = self.ray(place);
-        let f = ray.ray.z - self.curves.critical() * ray.s;
-        let view = self.view;
-        let change = |part: fn(Affine) -> f64| {
-            let s = (ray.ray.ta * part(view.ta()) + ray.ray.tb * part(view.tb())) / ray.s;
-            (part(view.z()) - self.curves.critical() * s) * view.pixel_side()
-        };
-        let (x, y) = (change(|a| a.per_x), change(|a| -a.per_y));
-        let slope = (x * x + y * y).sqrt();
-        let distance = -f / slope;
-        if distance.abs() < 1.0 {
-            1.0 - Section::new((x / slope, y / slope), (1.0, 1.0)).share_below(distance)
-        } else {
-            f64::from(u8::from(f > 0.0))
-        }
+        shadow::share(self.view, self.curves.critical(), place)
     }
 
     /// Returns the order that is told of what the curves call `order`, along a ray.

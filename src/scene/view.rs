@@ -72,8 +72,10 @@ pub struct View {
     slope_scale: f64,
     n_p: f64,
     n_a: f64,
-    /// n and b̂ in the scene's axes.
+    /// n, p̂, â and b̂ in the scene's axes.
     normal: DVec3,
+    outward: DVec3,
+    across: DVec3,
     level: DVec3,
     z: Affine,
     ta: Affine,
@@ -144,6 +146,8 @@ impl View {
             n_p,
             n_a,
             normal: direction(disk.normal),
+            outward: p,
+            across: a,
             level: b,
             z: Affine {
                 at_centre: -f.dot(p),
@@ -186,6 +190,11 @@ impl View {
     /// The disk's unit normal n, in the scene's axes.
     pub fn normal(&self) -> DVec3 {
         self.normal
+    }
+
+    /// The unit vectors p̂, away from the hole, â and b̂, in the scene's axes.
+    pub fn axes(&self) -> [DVec3; 3] {
+        [self.outward, self.across, self.level]
     }
 
     /// The unit vector `b̂ = p̂ × â` across p̂ and in the disk's plane, in the scene's axes.

@@ -52,20 +52,17 @@ impl EscapeCurve {
     /// Returns the ray that sweeps `angle` on its way out, at least 0.
     pub fn image(&self, angle: f64) -> Image {
         let octave = self.ends[1..].partition_point(|&end| end <= angle);
-        let (x, rate) = match (self.octaves.get(octave), self.inverses.get(octave)) {
-            (Some(powers), Some(inverse)) => {
-                let (low, high) = (self.ends[octave], self.ends[octave + 1]);
-                let place = 1.0 - 2.0 * (angle - low) / (high - low);
-                let guess = inverse.iter().rev().fold(0.0, |sum, c| sum * place + c);
-                let (value, slope) = horner(powers, guess);
-                let m = 0.5 * ((guess + (angle - value) / slope).clamp(-1.0, 1.0) + 3.0);
-                (libm::ldexp(m, -1 - octave as i32), -2.0 * m * slope)
-            }
-            _ => {
-                let last = self.octaves.len();
-                let x = libm::ldexp(libm::exp(self.ends[last] - angle), -(last as i32));
-                (x, 1.0)
-            }
+        let (x, rate) = if octave < self.octaves.len() {
+            let (low, high) = (self.ends[octave], self.ends[octave + 1]);
+            let place = 1.0 - 2.0 * (angle - low) / (high - low);
+            let inverse = &self.inverses[octave];
+            let guess = inverse.iter().rev().fold(0.0, |sum, c| sum * place + c);
+            let (value, slope) = horner(&self.octaves[octave], guess);
+            let m = 0.5 * ((guess + (angle - value) / slope).clamp(-1.0, 1.0) + 3.0);
+            (libm::ldexp(m, -1 - octave as i32), -2.0 * m * slope)
+        } else {
+            let x = libm::exp(self.ends[octave] - angle);
+            (libm::ldexp(x, -(octave as i32)), 1.0)
         };
         let half = x * self.longest;
         let [cosine, sine] = self.direction(x);

@@ -2,7 +2,7 @@
 //!
 //! A ray that is not captured sweeps the angle Φ on its way from the camera to infinity, and leaves in the direction
 //! `p̂ cos Φ + t̂ sin Φ`. At one camera radius Φ is a function of the angle ψ between the ray and the hole's direction
-//! alone. It falls strictly, from +∞ at the critical ray, ψ = ψ_c, to 0 straight away from the hole, ψ = π.
+//! alone. It falls strictly, from +∞ at the critical ray, `ψ = ψ_c`, to 0 straight away from the hole, ψ = π.
 //!
 //! # The axis
 //! Let `δ = ψ − ψ_c` be a ray's distance from the critical ray. The axis is `x = tan(δ/2)/tan(δ_max/2)`, with
@@ -14,9 +14,9 @@
 //!
 //! About the critical ray Φ is `−A ln x` and an analytic function, with A = 1 at x = 0 (Darwin 1959, *Proc. R. Soc. A*
 //! 249, 180; [`charts`](crate::table::charts)). Φ has no other singularity near the axis: the mirrored critical rays
-//! ψ = −ψ_c and 2π − ψ_c lie on either side. So each octave of x, whose ends are as far from the singularity as it is
-//! long, needs one polynomial of the same degree, whatever the camera's radius. Below the last octave only the logarithm is
-//! left: `Φ = Φ_last + ln(x_last/x)`.
+//! `ψ = −ψ_c` and `2π − ψ_c` lie on either side. So each octave of x is as
+//! far from the singularity as it is long, and one degree of polynomials does for all, whatever the camera's radius.
+//! Below the last octave only the logarithm is left: `Φ = Φ_last + ln(x_last/x)`.
 //!
 //! # Footprint
 //! A small circle of radius ε about a ray is seen as an ellipse in the sky. Its semi-axes are `ε |dΦ/dψ|` in the ray's
@@ -42,10 +42,10 @@ const OCTAVES: usize = 46;
 /// The escape curve of one camera radius.
 #[derive(Debug, Clone)]
 pub struct EscapeCurve {
-    /// Sine and cosine of ψ_c.
+    /// Sine and cosine of `ψ_c`.
     sine: f64,
     cosine: f64,
-    /// κ of the critical ray, cot ψ_c.
+    /// κ of the critical ray, `cot ψ_c`.
     critical: f64,
     /// `tan(δ_max/2)`
     longest: f64,
@@ -113,7 +113,7 @@ impl EscapeCurve {
             ends: vec![0.0],
             inverses: Vec::new(),
         };
-        // Far away, angles matter down to a share of the hole's size, ψ_c = 2/longest.
+        // Far away, angles matter down to a share of the hole's size, `ψ_c = 2/longest`.
         let far = 2.0 * libm::log2(longest.max(1.0));
         let chebyshev = Chebyshev::new(COEFFICIENTS - 1);
         for octave in 0..OCTAVES + far as usize {

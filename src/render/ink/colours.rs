@@ -5,9 +5,9 @@ use std::sync::OnceLock;
 use super::Part;
 use crate::light::{DisplayTransform, Palette, Radiance, RadianceTable};
 use crate::render::mixture::Mixture;
-use crate::render::painter::TILE;
 use crate::render::patch::Patch;
 use crate::render::planes::Form;
+use crate::render::tiles::TILE;
 use crate::scene::{Light, Scene, Tone};
 
 /// How light becomes colours.

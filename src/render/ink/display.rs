@@ -6,9 +6,9 @@ use std::sync::LazyLock;
 use super::{Averaging, Colours, Ink, Part, Quantities, Rows, Stretch};
 use crate::light::DisplayTransform;
 use crate::render::mixture::Mixture;
-use crate::render::painter::TILE;
 use crate::render::patch::{Patch, PatchFit};
 use crate::render::shader::{PlaceRay, Shader};
+use crate::render::tiles::TILE;
 
 /// Nodes a side of a patch.
 const NODES: usize = 7;

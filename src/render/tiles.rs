@@ -1,0 +1,175 @@
+//! The tiles of a band: rectangles of pixels whose quantities are polynomials, and their parts where these do not do.
+
+use super::patch::{Axis, Misfit, Patch};
+
+/// Columns and rows of a tile: what a patch covers at most. Bands are whole rows of tiles.
+pub(super) const TILE: (usize, usize) = (128, 32);
+
+/// Pixels of a row of a band, side by side.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Run {
+    pub(super) row: u32,
+    pub(super) from: u32,
+    pub(super) to: u32,
+}
+
+/// A rectangle of pixels of a band.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rectangle {
+    /// The first one, and the one after the last.
+    pub(super) columns: (usize, usize),
+    pub(super) rows: (usize, usize),
+}
+
+/// What is painted tile by tile, from patches with N nodes a side.
+pub(super) trait Tiled<const N: usize> {
+    /// Whether patches are needed at all.
+    fn needs_patch(&self) -> bool {
+        true
+    }
+
+    /// Fits a patch to the pixels of a rectangle.
+    ///
+    /// # Errors
+    /// A [`Misfit`]: the rectangle has to be cut.
+    fn fit(&mut self, bounds: Rectangle, patch: &mut Patch<N>) -> Result<(), Misfit>;
+
+    /// Paints the runs within a rectangle from its patch.
+    fn put_patch(&mut self, bounds: Rectangle, runs: &[Run], patch: &Patch<N>);
+
+    /// Paints one pixel.
+    fn put_pixel(&mut self, row: usize, column: usize);
+}
+
+/// Paints runs of a band of `rows` rows, sorted by rows, in a picture that is `width` pixels wide.
+pub(super) fn paint_runs<const N: usize>(
+    painter: &mut impl Tiled<N>,
+    width: usize,
+    rows: usize,
+    runs: &[Run],
+) {
+    let mut patch = Patch::new();
+    let mut rest = runs;
+    for first in (0..rows).step_by(TILE.1) {
+        let last = (first + TILE.1).min(rows);
+        let (runs, after) = rest.split_at(rest.partition_point(|run| (run.row as usize) < last));
+        rest = after;
+        if runs.is_empty() {
+            continue;
+        }
+        for column in (0..width).step_by(TILE.0) {
+            let tile = Rectangle {
+                columns: (column, (column + TILE.0).min(width)),
+                rows: (first, last),
+            };
+            paint_tile(painter, tile, runs, &mut patch);
+        }
+    }
+}
+
+/// Paints the runs within a rectangle: from a patch, or from patches of its parts, or pixel by pixel.
+fn paint_tile<const N: usize>(
+    painter: &mut impl Tiled<N>,
+    tile: Rectangle,
+    runs: &[Run],
+    patch: &mut Patch<N>,
+) {
+    let (count, bounds) = tile.shrunk(runs);
+    if count == 0 {
+        return;
+    }
+    let needs_patch = painter.needs_patch();
+    if needs_patch && count <= N * N {
+        for (row, (from, to)) in bounds.clip(runs) {
+            for column in from..to {
+                painter.put_pixel(row, column);
+            }
+        }
+        return;
+    }
+    let fit = if needs_patch {
+        painter.fit(bounds, patch)
+    } else {
+        Ok(())
+    };
+    let (axis, parts) = match fit {
+        Ok(()) => return painter.put_patch(bounds, runs, patch),
+        Err(Misfit::TooLong(axis, parts)) => (axis, parts),
+        Err(Misfit::NoValue) => (bounds.longer(), 2),
+    };
+    for part in bounds.parts(axis, parts) {
+        paint_tile(painter, part, runs, patch);
+    }
+}
+
+impl Rectangle {
+    /// The parts of runs within it: rows, and the columns of each.
+    pub(super) fn clip(self, runs: &[Run]) -> impl Iterator<Item = (usize, (usize, usize))> {
+        runs.iter().filter_map(move |run| {
+            let row = run.row as usize;
+            let from = (run.from as usize).max(self.columns.0);
+            let to = (run.to as usize).min(self.columns.1);
+            let is_within = from < to && row >= self.rows.0 && row < self.rows.1;
+            is_within.then_some((row, (from, to)))
+        })
+    }
+
+    /// The centres of its first and its last pixel, in a band that begins at row `top` of the picture.
+    pub(super) fn centres(self, top: usize) -> ((f64, f64), (f64, f64)) {
+        let centre = |column: usize, row: usize| (column as f64 + 0.5, (top + row) as f64 + 0.5);
+        (
+            centre(self.columns.0, self.rows.0),
+            centre(self.columns.1 - 1, self.rows.1 - 1),
+        )
+    }
+
+    /// The number of pixels of runs within it, and the rectangle about them.
+    fn shrunk(self, runs: &[Run]) -> (usize, Self) {
+        let mut count = 0;
+        let mut bounds = Self {
+            columns: (usize::MAX, 0),
+            rows: (usize::MAX, 0),
+        };
+        for (row, (from, to)) in self.clip(runs) {
+            count += to - from;
+            bounds.columns = (bounds.columns.0.min(from), bounds.columns.1.max(to));
+            bounds.rows = (bounds.rows.0.min(row), bounds.rows.1.max(row + 1));
+        }
+        (count, bounds)
+    }
+
+    /// Its parts, cut along an axis into at most so many: at least two, where it is more than a pixel.
+    fn parts(self, axis: Axis, count: usize) -> impl Iterator<Item = Self> {
+        let (columns, rows) = (self.columns.1 - self.columns.0, self.rows.1 - self.rows.0);
+        let axis = match axis {
+            Axis::X if columns > 1 => Axis::X,
+            Axis::Y if rows > 1 => Axis::Y,
+            _ if columns > rows => Axis::X,
+            _ => Axis::Y,
+        };
+        let (first, length) = match axis {
+            Axis::X => (self.columns.0, columns),
+            Axis::Y => (self.rows.0, rows),
+        };
+        let count = count.min(length);
+        (0..count).map(move |i| {
+            let part = (first + i * length / count, first + (i + 1) * length / count);
+            match axis {
+                Axis::X => Self {
+                    columns: part,
+                    ..self
+                },
+                Axis::Y => Self { rows: part, ..self },
+            }
+        })
+    }
+
+    /// The axis along which it is longer.
+    fn longer(self) -> Axis {
+        if self.columns.1 - self.columns.0 >= self.rows.1 - self.rows.0 {
+            Axis::X
+        } else {
+            Axis::Y
+        }
+    }
+}
