@@ -25,7 +25,7 @@ use super::vector::norm;
 /// assert!(error.to_string().starts_with("disk.inner = 2.0: no stable circular orbit exists"));
 /// # Ok::<(), darkness::scene::SceneError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     camera: Camera,
     radius: f64,
@@ -206,7 +206,7 @@ mod tests {
     #[test]
     fn with_size_checks_the_size_and_keeps_the_rest() {
         let scene = Scene::builtin("classic").unwrap();
-        let small = scene.with_size(64, 36).unwrap();
+        let small = scene.clone().with_size(64, 36).unwrap();
         assert_eq!(
             small.image(),
             ImageSize {
@@ -219,7 +219,7 @@ mod tests {
             (scene.camera(), scene.disk())
         );
         assert!(matches!(
-            scene.with_size(0, 36),
+            scene.clone().with_size(0, 36),
             Err(SceneError::Value { .. })
         ));
         assert!(matches!(
