@@ -1,7 +1,10 @@
 //! A scene whose values are checked.
 
+use std::sync::Arc;
+
 use super::error::SceneError;
 use super::layers::LayerSet;
+use super::sky::Sky;
 use super::validate;
 use super::values::{Camera, DEFAULT_TOLERANCE, Disk, ImageSettings, ImageSize, Light, Tone};
 use super::vector::norm;
@@ -31,6 +34,7 @@ pub struct Scene {
     radius: f64,
     disk: Disk,
     light: Option<Light>,
+    sky: Option<Arc<Sky>>,
     settings: ImageSettings,
 }
 
@@ -43,7 +47,7 @@ impl Scene {
     pub fn new(camera: Camera, disk: Disk, image: ImageSize) -> Result<Self, SceneError> {
         let (width, height) = (i64::from(image.width), i64::from(image.height));
         let settings = validate::image(width, height, true, DEFAULT_TOLERANCE)?;
-        Self::at_radius(camera, norm(camera.position), disk, None, settings)
+        Self::at_radius(camera, norm(camera.position), disk, None, None, settings)
     }
 
     /// The scene of a camera whose position has the length `radius`, up to the rounding of the position's components.
@@ -55,6 +59,7 @@ impl Scene {
         radius: f64,
         disk: Disk,
         light: Option<Light>,
+        sky: Option<Arc<Sky>>,
         settings: ImageSettings,
     ) -> Result<Self, SceneError> {
         validate::scene(&camera, radius, &disk)?;
@@ -63,6 +68,7 @@ impl Scene {
             radius,
             disk,
             light,
+            sky,
             settings,
         })
     }
@@ -105,12 +111,22 @@ impl Scene {
         Ok(self)
     }
 
+    /// The same scene with another sky, or without one (`None`).
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for a value of the sky that is not allowed.
+    pub fn with_sky(mut self, sky: Option<Sky>) -> Result<Self, SceneError> {
+        sky.as_ref().map_or(Ok(()), validate::sky)?;
+        self.sky = sky.map(Arc::new);
+        Ok(self)
+    }
+
     /// The same scene with its light multiplied by 2 to the power of `stops`.
     ///
     /// # Errors
     /// [`SceneError::Value`] for an exposure that is not allowed.
     pub fn with_exposure(mut self, stops: f64) -> Result<Self, SceneError> {
-        validate::exposure(stops)?;
+        validate::exposure("image.exposure", stops)?;
         self.settings.exposure = stops;
         Ok(self)
     }
@@ -160,6 +176,16 @@ impl Scene {
     /// The light of the disk; `None` where the disk only covers.
     pub fn light(&self) -> Option<Light> {
         self.light
+    }
+
+    /// The sky; `None` where it is black and pictures show only the disk.
+    pub fn sky(&self) -> Option<&Sky> {
+        self.sky.as_deref()
+    }
+
+    /// The sky, as the frames of an animation share it.
+    pub(super) fn shared_sky(&self) -> Option<&Arc<Sky>> {
+        self.sky.as_ref()
     }
 
     /// The exposure, in stops: a picture shows light times 2 to this power.

@@ -31,14 +31,14 @@ pub(in crate::scene) fn light(light: Option<Light>) -> Result<(), SceneError> {
     )
 }
 
-/// Checks an exposure, in stops: at most [`MAX_EXPOSURE`] either way.
+/// Checks the exposure that `key` names, in stops: at most [`MAX_EXPOSURE`] either way.
 ///
 /// # Errors
 /// [`SceneError::Value`]
-pub(in crate::scene) fn exposure(stops: f64) -> Result<(), SceneError> {
+pub(in crate::scene) fn exposure(key: &'static str, stops: f64) -> Result<(), SceneError> {
     SceneError::check(
         stops.abs() <= MAX_EXPOSURE,
-        "image.exposure",
+        key,
         stops,
         format_args!("the exposure is -{MAX_EXPOSURE} to {MAX_EXPOSURE} stops; the default is 0"),
     )
