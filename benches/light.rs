@@ -92,7 +92,7 @@ fn pixels(scene: &Scene) -> usize {
 fn frames(one: &ThreadPool, table: &Table, scene: &Scene, data: LayerSet) {
     let pixels = pixels(scene);
     let drawing = |form| Drawing::new(one, table, scene, form);
-    let hard = scene.with_antialias(false);
+    let hard = scene.clone().with_antialias(false);
     let mask_hard = Drawing::new(one, table, &hard, Form::Grey8);
     let (colour, layers, mask) = (
         drawing(Form::Rgb8),

@@ -1,7 +1,10 @@
 //! A scene whose values are checked.
 
+use std::sync::Arc;
+
 use super::error::SceneError;
 use super::layers::LayerSet;
+use super::sky::Sky;
 use super::validate;
 use super::values::{Camera, DEFAULT_TOLERANCE, Disk, ImageSettings, ImageSize, Light, Tone};
 use super::vector::norm;
@@ -25,12 +28,13 @@ use super::vector::norm;
 /// assert!(error.to_string().starts_with("disk.inner = 2.0: no stable circular orbit exists"));
 /// # Ok::<(), darkness::scene::SceneError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     camera: Camera,
     radius: f64,
     disk: Disk,
     light: Option<Light>,
+    sky: Option<Arc<Sky>>,
     settings: ImageSettings,
 }
 
@@ -43,7 +47,7 @@ impl Scene {
     pub fn new(camera: Camera, disk: Disk, image: ImageSize) -> Result<Self, SceneError> {
         let (width, height) = (i64::from(image.width), i64::from(image.height));
         let settings = validate::image(width, height, true, DEFAULT_TOLERANCE)?;
-        Self::at_radius(camera, norm(camera.position), disk, None, settings)
+        Self::at_radius(camera, norm(camera.position), disk, None, None, settings)
     }
 
     /// The scene of a camera whose position has the length `radius`, up to the rounding of the position's components.
@@ -55,6 +59,7 @@ impl Scene {
         radius: f64,
         disk: Disk,
         light: Option<Light>,
+        sky: Option<Arc<Sky>>,
         settings: ImageSettings,
     ) -> Result<Self, SceneError> {
         validate::scene(&camera, radius, &disk)?;
@@ -63,6 +68,7 @@ impl Scene {
             radius,
             disk,
             light,
+            sky,
             settings,
         })
     }
@@ -105,12 +111,22 @@ impl Scene {
         Ok(self)
     }
 
+    /// The same scene with another sky, or without one (`None`).
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for a value of the sky that is not allowed.
+    pub fn with_sky(mut self, sky: Option<Sky>) -> Result<Self, SceneError> {
+        sky.as_ref().map_or(Ok(()), validate::sky)?;
+        self.sky = sky.map(Arc::new);
+        Ok(self)
+    }
+
     /// The same scene with its light multiplied by 2 to the power of `stops`.
     ///
     /// # Errors
     /// [`SceneError::Value`] for an exposure that is not allowed.
     pub fn with_exposure(mut self, stops: f64) -> Result<Self, SceneError> {
-        validate::exposure(stops)?;
+        validate::exposure("image.exposure", stops)?;
         self.settings.exposure = stops;
         Ok(self)
     }
@@ -162,6 +178,16 @@ impl Scene {
         self.light
     }
 
+    /// The sky; `None` where it is black and pictures show only the disk.
+    pub fn sky(&self) -> Option<&Sky> {
+        self.sky.as_deref()
+    }
+
+    /// The sky, as the frames of an animation share it.
+    pub(super) fn shared_sky(&self) -> Option<&Arc<Sky>> {
+        self.sky.as_ref()
+    }
+
     /// The exposure, in stops: a picture shows light times 2 to this power.
     pub fn exposure(&self) -> f64 {
         self.settings.exposure
@@ -206,7 +232,7 @@ mod tests {
     #[test]
     fn with_size_checks_the_size_and_keeps_the_rest() {
         let scene = Scene::builtin("classic").unwrap();
-        let small = scene.with_size(64, 36).unwrap();
+        let small = scene.clone().with_size(64, 36).unwrap();
         assert_eq!(
             small.image(),
             ImageSize {
@@ -219,7 +245,7 @@ mod tests {
             (scene.camera(), scene.disk())
         );
         assert!(matches!(
-            scene.with_size(0, 36),
+            scene.clone().with_size(0, 36),
             Err(SceneError::Value { .. })
         ));
         assert!(matches!(

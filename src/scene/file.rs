@@ -1,14 +1,19 @@
 //! A scene's TOML form: names, types and defaults. [`validate`](super::validate) checks the values.
 
+use std::fmt::{self, Debug};
+use std::sync::Arc;
+
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 
 use super::error::SceneError;
 use super::layers::LayerSet;
+use super::sky::Sky;
 use super::validate;
 use super::values::{DEFAULT_TOLERANCE, ImageSettings, Light, Tone};
 use crate::quotation::beginning;
 
+mod sky;
 mod write;
 
 /// The whole file.
@@ -17,6 +22,8 @@ mod write;
 pub(super) struct SceneFile {
     pub(super) camera: CameraTable,
     pub(super) disk: DiskTable,
+    #[serde(default, deserialize_with = "sky::sky")]
+    pub(super) sky: Option<Arc<Sky>>,
     pub(super) image: ImageTable,
     pub(super) animation: Option<AnimationTable>,
 }
@@ -168,6 +175,11 @@ impl KeyframeTable {
     }
 }
 
+/// Writes the line of a key that has a value.
+fn line(f: &mut fmt::Formatter<'_>, key: &str, value: Option<impl Debug>) -> fmt::Result {
+    value.map_or(Ok(()), |value| writeln!(f, "{key} = {value:?}"))
+}
+
 fn of_film() -> f64 {
     24.0
 }
@@ -238,16 +250,17 @@ impl SceneFile {
             .map_err(|error| SceneError::toml(readable(error.to_string().trim_end())))
     }
 
-    /// Checks the light and the settings of the pictures.
+    /// Checks the light, the sky and the settings of the pictures.
     ///
     /// # Errors
     /// [`SceneError::Value`] for the first value that is not allowed.
     pub(super) fn settings(&self) -> Result<ImageSettings, SceneError> {
         let (image, light) = (&self.image, self.disk.light);
         validate::light(light)?;
+        self.sky.as_deref().map_or(Ok(()), validate::sky)?;
         let settings =
             validate::image(image.width, image.height, image.antialias, image.tolerance)?;
-        validate::exposure(image.exposure)?;
+        validate::exposure("image.exposure", image.exposure)?;
         validate::layers(image.layers, light)?;
         Ok(ImageSettings {
             exposure: image.exposure,
@@ -268,6 +281,7 @@ fn readable(message: &str) -> String {
             .replace("expected i64", "expected a whole number")
             .replace("expected a boolean", "expected true or false")
             .replace("expected a sequence", "expected a list")
+            .replace("expected a string", "expected a text")
     });
     lines.collect::<Vec<_>>().join("\n")
 }

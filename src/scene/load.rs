@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
+use std::sync::Arc;
 
 use super::animation::Animation;
 use super::builtin::Builtin;
@@ -35,13 +36,14 @@ impl Scene {
 
     /// The built-in scene of this name, or else the scene in the TOML file at this path.
     ///
-    /// A file that has the name of a built-in scene is reached as `./classic`.
+    /// A file that has the name of a built-in scene is reached as `./classic`. The files that a sky names are relative
+    /// to the folder of the scene's file.
     ///
     /// # Errors
     /// [`SceneError::Unknown`] where there is neither, [`SceneError::Read`] for a file that cannot be read,
     /// [`SceneError::InFile`] for a file that holds no valid scene.
     pub fn load(path_or_name: impl AsRef<Path>) -> Result<Self, SceneError> {
-        load_text(path_or_name.as_ref(), Self::from_toml)
+        load(path_or_name.as_ref(), |file| Animation::new(file)?.frame(1))
     }
 
     /// The scene's TOML form with every key written out. [`Scene::from_toml`] reads the same scene back.
@@ -66,17 +68,18 @@ impl Animation {
     /// # Errors
     /// Those of [`Scene::load`].
     pub fn load(path_or_name: impl AsRef<Path>) -> Result<Self, SceneError> {
-        load_text(path_or_name.as_ref(), Self::from_toml)
+        load(path_or_name.as_ref(), Self::new)
     }
 }
 
-/// Reads the text of the built-in scene of this name, or else of the file at this path.
-fn load_text<T>(
+/// Makes something of the built-in scene of this name, or else of the file at this path. Names of files in it are
+/// relative to its folder.
+fn load<T>(
     path: &Path,
-    parse: impl Fn(&str) -> Result<T, SceneError>,
+    make: impl Fn(SceneFile) -> Result<T, SceneError>,
 ) -> Result<T, SceneError> {
     if let Some(builtin) = path.to_str().and_then(Builtin::named) {
-        return parse(builtin.toml());
+        return make(SceneFile::parse(builtin.toml())?);
     }
     let text = read(path).map_err(|error| {
         let path = path.to_owned();
@@ -86,7 +89,13 @@ fn load_text<T>(
             SceneError::Read { path, error }
         }
     })?;
-    parse(&text).map_err(|error| SceneError::InFile {
+    let made = SceneFile::parse(&text).and_then(|mut file| {
+        if let (Some(sky), Some(folder)) = (&mut file.sky, path.parent()) {
+            Arc::make_mut(sky).resolve(folder);
+        }
+        make(file)
+    });
+    made.map_err(|error| SceneError::InFile {
         path: path.to_owned(),
         error: Box::new(error),
     })
@@ -109,7 +118,7 @@ fn read(path: &Path) -> io::Result<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{DEFAULT_SCENE, builtins};
+    use super::super::{DEFAULT_SCENE, StarSource, builtins};
     use super::*;
 
     #[test]
@@ -144,6 +153,38 @@ mod tests {
             message.contains(&folder.path().display().to_string()),
             "{message}"
         );
+    }
+
+    #[test]
+    fn files_of_a_sky_are_relative_to_the_folder_of_the_scenes_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mine.toml");
+        let absolute = folder.path().join("bright.csv");
+        let sky = format!(
+            "[sky]\npanorama = \"skies/night.exr\"\nstars = '{}'\n\n[image]",
+            absolute.display()
+        );
+        let toml = Scene::builtin("inside").unwrap().to_toml();
+        let toml = toml.replace("[image]", &sky);
+        std::fs::write(&path, &toml).unwrap();
+        let files = |scene: &Scene| {
+            let sky = scene.sky().unwrap().clone();
+            let StarSource::File(stars) = sky.stars.unwrap().source else {
+                panic!("no catalogue");
+            };
+            [sky.panorama.unwrap(), stars]
+        };
+        let animation = Animation::load(&path).unwrap();
+        for scene in [Scene::load(&path).unwrap(), animation.frame(1).unwrap()] {
+            let [panorama, stars] = files(&scene);
+            assert_eq!(panorama.name, "skies/night.exr");
+            assert_eq!(panorama.path, folder.path().join("skies/night.exr"));
+            assert_eq!(stars.path, absolute);
+            assert_eq!(scene.to_toml(), animation.to_toml());
+        }
+        let [panorama, stars] = files(&Scene::from_toml(&toml).unwrap());
+        assert_eq!(panorama.path, Path::new("skies/night.exr"));
+        assert_eq!(stars.path, absolute);
     }
 
     #[test]

@@ -43,6 +43,7 @@ mod error;
 mod file;
 mod layers;
 mod load;
+mod sky;
 mod validate;
 mod values;
 mod vector;
@@ -53,9 +54,11 @@ pub use builtin::{Builtin, DEFAULT_SCENE, builtins};
 pub use checked::Scene;
 pub use error::SceneError;
 pub use layers::{Layer, LayerSet};
+pub use sky::{DEFAULT_STAR_RADIUS, Sky, SkyFile, StarSource, Stars};
 pub use validate::{
-    FARTHEST_CAMERA, HORIZON_RADIUS, ISCO_RADIUS, MAX_EXPOSURE, MAX_IMAGE_SIDE, MAX_TEMPERATURE,
-    MAX_TOLERANCE, MIN_TEMPERATURE, NARROWEST_FOV, WIDEST_DISK,
+    FARTHEST_CAMERA, HORIZON_RADIUS, ISCO_RADIUS, MAX_EXPOSURE, MAX_GRID, MAX_IMAGE_SIDE,
+    MAX_STAR_COUNT, MAX_STAR_RADIUS, MAX_TEMPERATURE, MAX_TOLERANCE, MIN_GRID, MIN_TEMPERATURE,
+    NARROWEST_FOV, WIDEST_DISK,
 };
 pub use values::{Camera, DEFAULT_TOLERANCE, Disk, ImageSize, Light, Tone};
 pub use view::{Affine, PixelRay, View};

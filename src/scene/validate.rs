@@ -7,9 +7,12 @@ use super::values::{Camera, Disk, ImageSettings, ImageSize};
 use super::vector::{cosine, direction, norm};
 
 mod light;
+mod sky;
 
 pub use light::{MAX_EXPOSURE, MAX_TEMPERATURE, MIN_TEMPERATURE};
 pub(super) use light::{bits, exposure, layers, light};
+pub use sky::{MAX_GRID, MAX_STAR_COUNT, MAX_STAR_RADIUS, MIN_GRID};
+pub(super) use sky::{sky, star_count, star_seed};
 
 /// The horizon's radius, in Schwarzschild radii. A camera stands outside it.
 pub const HORIZON_RADIUS: f64 = 1.0;

@@ -35,7 +35,7 @@ impl Program {
             self.folder.path().join("scene.png"),
         );
         // Hard edges: a pixel shows what its centre sees, and can be compared with its ray.
-        fs::write(&file, scene.with_antialias(false).to_toml()).unwrap();
+        fs::write(&file, scene.clone().with_antialias(false).to_toml()).unwrap();
         let (_, said) = done(self.folder.path(), &["render", "scene.toml"]);
         let pixels = image::open(&picture).unwrap().to_luma8().into_raw();
         Drawn {

@@ -56,6 +56,7 @@ fn luminance([red, green, blue]: [f64; 3]) -> f64 {
 fn brightest(scene: &Scene) -> f64 {
     let (width, height) = (scene.image().width, scene.image().height);
     let finer = scene
+        .clone()
         .with_size(width.max(12) * 8, height.max(12) * 8)
         .unwrap()
         .with_antialias(false);

@@ -49,7 +49,7 @@ fn scenes() -> impl Iterator<Item = Scene> {
         let animation = Animation::load(name).unwrap().with_size(700, 240).unwrap();
         animation.frame(number).unwrap()
     });
-    scenes.flat_map(|scene| [true, false].map(|antialias| scene.with_antialias(antialias)))
+    scenes.flat_map(|scene| [true, false].map(|antialias| scene.clone().with_antialias(antialias)))
 }
 
 #[test]

@@ -64,8 +64,10 @@ fn alpha_equals_the_references() {
     for name in SCENES {
         for antialias in [false, true] {
             let Reference { scene, rows } = reference(name);
-            let layers =
-                Layers::rendered(&scene.with_antialias(antialias), table("standard").lookup());
+            let layers = Layers::rendered(
+                &scene.clone().with_antialias(antialias),
+                table("standard").lookup(),
+            );
             let width = scene.image().width as usize;
             let mut wrong = Vec::new();
             for &((i, j), known) in &rows {

@@ -23,7 +23,7 @@ fn built_in_scenes_equal_each_pixel_s_own_ray() {
     for builtin in builtins() {
         let scene = Scene::builtin(builtin.name()).unwrap();
         for (width, height) in [(641, 359), (67, 1), (1, 131)] {
-            let (filled, single) = frames(&scene.with_size(width, height).unwrap());
+            let (filled, single) = frames(&scene.clone().with_size(width, height).unwrap());
             assert!(filled == single, "{} at {width} × {height}", builtin.name());
         }
     }

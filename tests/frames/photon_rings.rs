@@ -91,8 +91,8 @@ impl Line {
         let pixel = (outer - inner) / THICKNESS;
         let scene = place.scene(0.5 * (kappa[0] + kappa[1]), f64::from(SIDE) * pixel);
         Self {
-            scene,
             view: View::new(&scene),
+            scene,
             order,
             pixel,
         }

@@ -48,7 +48,7 @@ fn kept_curves_move_no_edge_by_more_than_the_tolerance() {
     let scene = Scene::builtin("classic").unwrap();
     let size = scene.image();
     for (width, height) in [(size.width, size.height), (480, 270), (97, 61), (480, 270)] {
-        let scene = scene.with_size(width, height).unwrap();
+        let scene = scene.clone().with_size(width, height).unwrap();
         let most = apart(&mut renderer, &scene);
         assert!(most <= Some(1), "{width} × {height}: {most:?} greys");
     }

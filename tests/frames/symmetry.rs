@@ -172,7 +172,7 @@ fn left_and_right_are_alike_to_the_byte() {
     let lookup = table("standard").lookup();
     let classic = Scene::builtin("classic").unwrap();
     for (width, height) in [(320, 180), (321, 181)] {
-        let scene = classic.with_size(width, height).unwrap();
+        let scene = classic.clone().with_size(width, height).unwrap();
         for frame in [by_curves(&scene, &lookup), by_pixels(&scene, &lookup)] {
             assert!(frame.contains(&WHITE));
             assert!(frame == mirrored(&frame, width), "{width} × {height}");

@@ -88,7 +88,10 @@ impl LightPanel {
     ) -> Result<Self, ChartError> {
         let bounds = FrameEffort::of(effort);
         let light = scene.light().unwrap_or(LIGHT);
-        let scene = (*scene).with_antialias(false).with_light(Some(light))?;
+        let scene = scene
+            .clone()
+            .with_antialias(false)
+            .with_light(Some(light))?;
         let view = View::new(&scene);
         let settings = settings(&scene, &view, tables, baseline_step, effort);
         let times = one_thread()?.install(|| time(&scene, light, &settings, &bounds, progress))?;

@@ -207,15 +207,14 @@ impl Animation {
             outer: self.outer,
             normal: self.normal.at(time),
         };
-        Scene::at_radius(camera, radius, disk, self.file.disk.light, self.settings).map_err(
-            |error| {
-                if self.is_still() {
-                    error
-                } else {
-                    error.in_frame(number)
-                }
-            },
-        )
+        let (light, sky) = (self.file.disk.light, self.file.sky.clone());
+        Scene::at_radius(camera, radius, disk, light, sky, self.settings).map_err(|error| {
+            if self.is_still() {
+                error
+            } else {
+                error.in_frame(number)
+            }
+        })
     }
 
     /// Checks frame `number`, and that the camera does not pass through the disk on its way to the next frame.

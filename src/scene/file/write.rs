@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::{
     AnimationTable, CameraTable, DiskTable, FromTo, ImageTable, Interpolation, OrbitTable,
-    SceneFile,
+    SceneFile, line, sky,
 };
 use crate::scene::checked::Scene;
 use crate::scene::values::{Light, Tone};
@@ -35,6 +35,7 @@ impl From<&Scene> for SceneFile {
                 bits: i64::from(scene.bits()),
                 layers: scene.layers(),
             },
+            sky: scene.shared_sky().cloned(),
             animation: None,
         }
     }
@@ -48,6 +49,7 @@ impl fmt::Display for SceneFile {
             camera,
             disk,
             image,
+            sky,
             animation,
         } = self;
         writeln!(f, "[camera]")?;
@@ -68,6 +70,9 @@ impl fmt::Display for SceneFile {
             }
             Some(Light::Bolometric) => writeln!(f, "\n[disk.light]\nmodel = \"bolometric\"")?,
             None => {}
+        }
+        if let Some(sky) = sky {
+            sky::write(f, sky)?;
         }
         writeln!(f, "\n[image]")?;
         writeln!(f, "width = {}", image.width)?;
@@ -135,11 +140,6 @@ impl fmt::Display for AnimationTable {
         }
         Ok(())
     }
-}
-
-/// Writes the line of a key that has a value.
-fn line(f: &mut fmt::Formatter<'_>, key: &str, value: Option<impl fmt::Debug>) -> fmt::Result {
-    value.map_or(Ok(()), |value| writeln!(f, "{key} = {value:?}"))
 }
 
 #[cfg(test)]

@@ -31,14 +31,14 @@ pub(in crate::scene) fn light(light: Option<Light>) -> Result<(), SceneError> {
     )
 }
 
-/// Checks an exposure, in stops: at most [`MAX_EXPOSURE`] either way.
+/// Checks the exposure that `key` names, in stops: at most [`MAX_EXPOSURE`] either way.
 ///
 /// # Errors
 /// [`SceneError::Value`]
-pub(in crate::scene) fn exposure(stops: f64) -> Result<(), SceneError> {
+pub(in crate::scene) fn exposure(key: &'static str, stops: f64) -> Result<(), SceneError> {
     SceneError::check(
         stops.abs() <= MAX_EXPOSURE,
-        "image.exposure",
+        key,
         stops,
         format_args!("the exposure is -{MAX_EXPOSURE} to {MAX_EXPOSURE} stops; the default is 0"),
     )
@@ -280,16 +280,16 @@ mod tests {
         let black_body = |temperature| Some(Light::BlackBody { temperature });
         let only = |layer| LayerSet::default().with(layer);
         for kelvin in [99.0, 2e9, f64::NAN] {
-            assert!(scene.with_light(black_body(kelvin)).is_err());
+            assert!(scene.clone().with_light(black_body(kelvin)).is_err());
             assert!(animation.clone().with_light(black_body(kelvin)).is_err());
         }
         assert!(
-            scene.with_exposure(f64::NAN).is_err()
+            scene.clone().with_exposure(f64::NAN).is_err()
                 && animation.clone().with_exposure(101.0).is_err()
         );
-        assert!(scene.with_bits(10).is_err() && animation.clone().with_bits(0).is_err());
+        assert!(scene.clone().with_bits(10).is_err() && animation.clone().with_bits(0).is_err());
         for layer in [Layer::Colour, Layer::Temperature, Layer::Alpha] {
-            assert!(scene.with_layers(only(layer)).is_err());
+            assert!(scene.clone().with_layers(only(layer)).is_err());
             assert!(animation.clone().with_layers(only(layer)).is_err());
         }
         let lit = scene
@@ -299,7 +299,8 @@ mod tests {
             .and_then(|lit| lit.with_exposure(1.5))
             .and_then(|lit| lit.with_bits(16));
         let lit = lit.unwrap().with_tone(Tone::None);
-        assert!(lit.with_light(None).is_err() && lit.with_light(Some(Light::Bolometric)).is_err());
+        assert!(lit.clone().with_light(None).is_err());
+        assert!(lit.clone().with_light(Some(Light::Bolometric)).is_err());
         let film = animation
             .with_light(black_body(7000.0))
             .and_then(|lit| lit.with_layers(only(Layer::Temperature)));
