@@ -1,0 +1,3 @@
+//! The sky: what a ray shows that neither meets the disk nor falls into the hole.
+
+pub mod stars;
