@@ -18,6 +18,16 @@ fn power_law(c: f64) -> f64 {
     1.055 * libm::pow(c, 1.0 / 2.4) - 0.055
 }
 
+/// Returns the linear light of an sRGB value `v` in [0, 1], clipped to there: the inverse of [`encode`].
+pub fn decode(v: f64) -> f64 {
+    let v = v.clamp(0.0, 1.0);
+    if v > 12.92 * LINEAR_UP_TO {
+        libm::pow((v + 0.055) / 1.055, 2.4)
+    } else {
+        v / 12.92
+    }
+}
+
 /// [`encode`] as a table, the same on every machine.
 ///
 /// The power law is a cubic in each eighth of an octave. Its error is less than 1e-6: 0.0003 codes of 8 bits, 0.05
@@ -26,6 +36,10 @@ fn power_law(c: f64) -> f64 {
 pub struct SrgbEncoder {
     /// Polynomials in the cell's fraction, constant term first.
     cells: [[f32; 4]; Self::CELLS],
+    /// For each cell of [`Self::code_cell`], the 8-bit code at its start.
+    codes: Vec<u8>,
+    /// The least light of each 8-bit code; that of code 256 is infinite.
+    thresholds: Vec<f32>,
 }
 
 impl SrgbEncoder {
@@ -38,7 +52,12 @@ impl SrgbEncoder {
     /// The greatest number below 1.
     const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
 
-    /// Computes the cells: 289 powers.
+    /// The bits of a number that tell its cell of codes: no cell has more than two codes.
+    const CODE_SHIFT: u32 = f32::MANTISSA_DIGITS - 1 - 7;
+    /// The start of the first cell of codes: code 0 up to there.
+    const FIRST_CODE: f32 = 1.0 / 8192.0;
+
+    /// Computes the cells: 289 powers, and 255 for the codes of 8 bits.
     pub fn new() -> Self {
         let first = Self::FIRST.to_bits() >> Self::SHIFT;
         let last = Self::LAST.to_bits() >> Self::SHIFT;
@@ -49,7 +68,35 @@ impl SrgbEncoder {
             let values = [0.0, 1.0, 2.0, 3.0].map(|i| power_law(start + (end - start) * i / 3.0));
             *cell = super::cubic::through(values).map(|c| c as f32);
         }
-        Self { cells }
+        // Code n begins at n − ½.
+        let least = (1..256).map(|code| decode((f64::from(code) - 0.5) / 255.0) as f32);
+        let thresholds: Vec<f32> = [0.0].into_iter().chain(least).chain([f32::INFINITY]).collect();
+        let cells_of_codes = Self::code_cell(1.0) + 1;
+        let start = |cell: usize| {
+            let first = (Self::FIRST_CODE.to_bits() >> Self::CODE_SHIFT) as usize;
+            f32::from_bits(((first + cell) as u32) << Self::CODE_SHIFT)
+        };
+        let code = |light: f32| thresholds[1..].partition_point(|&least| least <= light) as u8;
+        Self {
+            cells,
+            codes: (0..cells_of_codes).map(|cell| code(start(cell))).collect(),
+            thresholds,
+        }
+    }
+
+    /// The cell of codes of light between [`Self::FIRST_CODE`] and 1.
+    #[inline(always)]
+    fn code_cell(c: f32) -> usize {
+        ((c.to_bits() >> Self::CODE_SHIFT) - (Self::FIRST_CODE.to_bits() >> Self::CODE_SHIFT))
+            as usize
+    }
+
+    /// Returns the nearest 8-bit code of linear light `c`, clipped to 0 and 1.
+    #[inline(always)]
+    pub fn code8(&self, c: f32) -> u8 {
+        let c = c.max(Self::FIRST_CODE).min(1.0);
+        let code = self.codes[Self::code_cell(c)];
+        code + u8::from(c >= self.thresholds[usize::from(code) + 1])
     }
 
     /// Returns the sRGB value of linear light `c`, as [`encode`] does, up to 1e-6.
@@ -127,6 +174,27 @@ mod tests {
         }
         for much in [1.0, 1.5, f32::MAX, f32::INFINITY] {
             assert!((encoder.encode(much) - 1.0).abs() < 5e-7);
+        }
+    }
+
+    #[test]
+    fn codes_are_the_nearest() {
+        let encoder = SrgbEncoder::new();
+        for i in 0..=200_000 {
+            let c = (f64::from(i) / 200_000.0) as f32;
+            let exact = 255.0 * encode(f64::from(c));
+            let code = f64::from(encoder.code8(c));
+            assert!((code - exact).abs() <= 0.5001, "{c}: {code}, not {exact}");
+        }
+        assert_eq!([-1.0, 0.0, 1e-30, 2.0, f32::INFINITY].map(|c| encoder.code8(c)), [0, 0, 0, 255, 255]);
+        assert_eq!(encoder.code8(f32::NAN), 0);
+    }
+
+    #[test]
+    fn decoding_is_the_inverse() {
+        for code in 0..=255 {
+            let v = f64::from(code) / 255.0;
+            assert!((encode(decode(v)) - v).abs() < 1e-12);
         }
     }
 }

@@ -47,7 +47,17 @@ impl DisplayTransform {
     /// Returns [`Self::encode`] in 8 bits, rounded to the nearest code up to 0.001 codes.
     #[inline(always)]
     pub fn rgb8(&self, rgb: [f32; 3]) -> [u8; 3] {
-        self.values(rgb).map(|value| (value * 255.0 + 0.5) as u8)
+        let scaled = rgb.map(|c| c * self.scale as f32);
+        let (least, greatest) = (
+            scaled[0].min(scaled[1]).min(scaled[2]),
+            scaled[0].max(scaled[1]).max(scaled[2]),
+        );
+        // What is in the gamut and below the highlights is only encoded.
+        if least >= 0.0 && greatest <= START as f32 {
+            return scaled.map(|c| self.encoder.code8(c));
+        }
+        self.displayed(rgb.map(f64::from))
+            .map(|c| self.encoder.code8(c as f32))
     }
 
     /// Returns [`Self::encode`] in 16 bits, rounded to the nearest code up to 0.05 codes.
@@ -74,6 +84,9 @@ impl DisplayTransform {
     }
 }
 
+/// Highlights begin above this much light.
+const START: f64 = 0.8;
+
 /// Moves a colour with a negative component towards the grey of its luminance. Without luminance it is black.
 #[inline(always)]
 fn in_gamut(rgb: [f64; 3]) -> [f64; 3] {
@@ -90,7 +103,6 @@ fn in_gamut(rgb: [f64; 3]) -> [f64; 3] {
 /// The specification's compression and desaturation, with `K_s` = 0.8 and `K_d` = 0.15.
 #[inline(always)]
 fn compress_highlights(rgb: [f64; 3]) -> [f64; 3] {
-    const START: f64 = 0.8;
     const DESATURATION: f64 = 0.15;
     let peak = rgb[0].max(rgb[1]).max(rgb[2]);
     if peak <= START {

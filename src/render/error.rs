@@ -37,6 +37,9 @@ pub enum RenderError {
         "the scene's disk has no light to show: give it a [disk.light] table, with a temperature for temperatures"
     )]
     NoLight,
+    /// A file of the sky could not be read: why.
+    #[error("{0}")]
+    Sky(String),
     /// A ray could not be followed.
     #[error(transparent)]
     Orbit(#[from] OrbitError),

@@ -53,6 +53,7 @@ mod section;
 mod shaded;
 mod shader;
 mod shadow;
+mod sky;
 mod tiles;
 
 pub use error::RenderError;

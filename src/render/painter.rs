@@ -30,17 +30,11 @@ impl<I: Ink<N>, const N: usize> Painter<'_, I, N> {
         (self.top + row) as f64 + 0.5
     }
 
-    /// Clears `rows` rows but for runs.
-    pub(super) fn clear_but(&self, rows: usize, runs: &[Run], memory: &mut I::Band<'_>) {
+    /// Clears `rows` rows.
+    pub(super) fn clear(&self, rows: usize, memory: &mut I::Band<'_>) {
         let width = self.shader.view.width() as usize;
-        let mut runs = runs.iter().peekable();
         for row in 0..rows {
-            let mut from = 0;
-            while let Some(run) = runs.next_if(|run| run.row as usize == row) {
-                self.ink.clear(memory, row, (from, run.from as usize));
-                from = run.to as usize;
-            }
-            self.ink.clear(memory, row, (from, width));
+            self.ink.clear(memory, row, (0, width));
         }
     }
 
@@ -84,11 +78,13 @@ impl<I: Ink<N>, const N: usize> Painter<'_, I, N> {
             .fit(patch, corners, ink.quantities(), allowed, evaluate)
     }
 
-    /// Paints the pixels that are covered in part. `parts` is memory.
+    /// Paints the pixels that are covered in part. `parts` is memory; `beside` gives the light of a pixel, by row and
+    /// column, where the disk does not cover it.
     pub(super) fn paint_partial(
         &self,
         partial: &mut [Partial],
         parts: &mut Vec<Part>,
+        beside: impl Fn(usize, usize) -> [f32; 3],
         memory: &mut I::Band<'_>,
     ) {
         partial.sort_unstable_by_key(|partial| (partial.row, partial.column, partial.part.order));
@@ -97,7 +93,9 @@ impl<I: Ink<N>, const N: usize> Painter<'_, I, N> {
             parts.extend(pixel.iter().map(|partial| partial.part));
             let (row, column) = (pixel[0].row as usize, pixel[0].column as usize);
             let mixture = Mixture::new(self.shader, (column as f64 + 0.5, self.y(row)));
-            self.ink.put_mixture(memory, (row, column), parts, &mixture);
+            let beside = beside(row, column);
+            self.ink
+                .put_mixture(memory, (row, column), parts, &mixture, beside);
         }
     }
 }

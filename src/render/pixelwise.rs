@@ -7,7 +7,10 @@ use rayon::prelude::*;
 
 use super::error::{RenderError, blank};
 use super::ink::{Averaging, Colours, Data, Ink, PlaneRows, amplitude};
+use super::frame::Threads;
 use super::planes::Target;
+use super::sky::{FrameSky, SkyShader, SkySight, StarImages};
+use crate::isoradial::Escape;
 use crate::light::{Sight, SightGeometry};
 use crate::orbit::integrate::FixedStep;
 use crate::orbit::invariants::Orbit;
@@ -32,6 +35,7 @@ pub fn render(
         view,
         orbits,
         colours: None,
+        sky: None,
     };
     frame.draw(row_done, Target::Grey8(&mut pixels, view.width() as usize))?;
     Ok(pixels)
@@ -42,8 +46,10 @@ pub(super) struct Frame<'a, O> {
     pub(super) scene: &'a Scene,
     pub(super) view: &'a View,
     pub(super) orbits: &'a O,
-    /// Of a scene with light.
+    /// Of a scene with light or a sky.
     pub(super) colours: Option<&'a Colours>,
+    /// Where the form shows the sky or data of it.
+    pub(super) sky: Option<&'a FrameSky<'a>>,
 }
 
 impl<O: Orbits> Frame<'_, O> {
@@ -69,36 +75,116 @@ impl<O: Orbits> Frame<'_, O> {
                 Ok([if sees { u16::MAX } else { 0 }])
             }),
             Target::Rgb8(samples, stride) => {
-                let palette = &colours()?.palette;
-                self.rows(row_done, samples, stride, |place| {
-                    Ok(palette.rgb8(self.amplitude(place)?))
-                })
+                let colours = colours()?;
+                let codes = (
+                    |y| colours.palette.rgb8(y),
+                    |light| colours.display.rgb8(light),
+                );
+                self.colour_rows(row_done, samples, stride, colours, codes)
             }
             Target::Rgb16(samples, stride) => {
                 let colours = colours()?;
-                self.rows(row_done, samples, stride, |place| {
-                    let light = colours.radiance.rgb(self.amplitude(place)?);
-                    Ok(colours.display.rgb16(light))
-                })
+                let of_light = |light| colours.display.rgb16(light);
+                let codes = (|y| of_light(colours.radiance.rgb(y)), of_light);
+                self.colour_rows(row_done, samples, stride, colours, codes)
             }
             Target::Planes(planes, layers) => {
-                let data = Data::new(layers, self.colours, self.scene.light(), Averaging::Centre)?;
+                let data = Data::new(layers, self.colours, self.scene, Averaging::Centre)?;
                 let width = self.view.width() as usize;
                 let rows = PlaneRows::bands(planes, width, 1);
+                let stars = self.stars();
                 rows.enumerate().par_bridge().try_for_each(|(j, mut row)| {
                     data.clear(&mut row, 0, (0, width));
+                    let light = self.sky_row(&stars, j);
                     for i in 0..width {
                         let place = (i as u32, j as u32);
-                        match sight(self.scene, self.view, self.orbits, place)? {
-                            Some(sight) => data.set_sight(&mut row, i, &sight),
-                            None => Data::set_hidden(&mut row, i, self.is_captured(place)?),
+                        if let Some(sight) = sight(self.scene, self.view, self.orbits, place)? {
+                            data.set_sight(&mut row, i, &sight);
+                            continue;
+                        }
+                        let is_captured = self.is_captured(place)?;
+                        Data::set_hidden(&mut row, i, is_captured);
+                        data.put_light(&mut row, 0, i, &light[i..=i]);
+                        if let Some(sky) = self.sky.filter(|_| !is_captured) {
+                            let sight = self.sky_sight(&sky.shader, place)?;
+                            data.put_direction(&mut row, i, &sky.shader, &sight);
                         }
                     }
+                    data.finish_sky(&mut row);
                     row_done();
                     Ok(())
                 })
             }
         }
+    }
+
+    /// The images of stars, a band for each row.
+    fn stars(&self) -> StarImages {
+        let mut stars = StarImages::default();
+        if let Some(sky) = self.sky {
+            sky.find_stars(&mut stars, 1, Threads::All);
+        }
+        stars
+    }
+
+    /// The light of the sky in a row, where no disk is before it.
+    fn sky_row(&self, stars: &StarImages, row: usize) -> Vec<[f32; 3]> {
+        let mut light = vec![[0.0; 3]; self.view.width() as usize];
+        if let Some(sky) = self.sky {
+            for (i, light) in light.iter_mut().enumerate() {
+                *light = sky.pixel((i as f64 + 0.5, row as f64 + 0.5));
+            }
+            sky.add_stars(stars, (row, row, 1), &mut light);
+        }
+        light
+    }
+
+    /// Where the ray of a pixel's centre leaves to, by the method.
+    fn sky_sight(&self, sky: &SkyShader<'_>, (i, j): (u32, u32)) -> Result<SkySight, OrbitError> {
+        let pixel = self.view.pixel(i, j);
+        let s = pixel.transverse();
+        let angle = if s > 0.0 {
+            let ray = Ray::new(self.view.u0(), self.view.dudphi(pixel))?;
+            let events = self.orbits.follow(ray, &[])?;
+            events.last().map_or(0.0, |end| end.angle)
+        } else {
+            0.0
+        };
+        let rate = f64::NAN;
+        Ok(sky.sight(pixel, s, Escape { angle, rate }))
+    }
+
+    /// Draws rows of colours: codes of an amplitude of the disk, or of light.
+    fn colour_rows<T: Send + Copy + Default>(
+        &self,
+        row_done: &(dyn Fn() + Sync),
+        samples: &mut [T],
+        stride: usize,
+        colours: &Colours,
+        (of_amplitude, of_light): (
+            impl Fn(f32) -> [T; 3] + Sync,
+            impl Fn([f32; 3]) -> [T; 3] + Sync,
+        ),
+    ) -> Result<(), RenderError> {
+        let stars = self.stars();
+        let (width, height) = (self.view.width() as usize, self.view.height() as usize);
+        let needed = stride * (height - 1) + 3 * width;
+        let rows = samples[..needed].par_chunks_mut(stride).enumerate();
+        rows.try_for_each(|(j, row)| {
+            let light = self.sky_row(&stars, j);
+            let pixels = row[..3 * width].as_chunks_mut::<3>().0;
+            for (i, (samples, light)) in pixels.iter_mut().zip(light).enumerate() {
+                let place = (i as u32, j as u32);
+                *samples = match sight(self.scene, self.view, self.orbits, place)? {
+                    Some(_) if colours.is_white => of_light([1.0; 3]),
+                    Some(sight) => of_amplitude(amplitude(&sight) as f32),
+                    None if self.sky.is_some() => of_light(light),
+                    None => [T::default(); 3],
+                };
+            }
+            row_done();
+            Ok(())
+        })
     }
 
     /// Draws rows of pixels of `N` samples.
@@ -120,12 +206,6 @@ impl<O: Orbits> Frame<'_, O> {
             row_done();
             Ok(())
         })
-    }
-
-    /// The amplitude that a pixel's centre sees, 0 where there is no disk.
-    fn amplitude(&self, place: (u32, u32)) -> Result<f32, OrbitError> {
-        let sight = sight(self.scene, self.view, self.orbits, place)?;
-        Ok(sight.map_or(0.0, |sight| amplitude(&sight) as f32))
     }
 
     /// Whether the ray of a pixel's centre falls in.

@@ -1,7 +1,7 @@
 //! Frames of data: planes of numbers.
 
 use super::error::{RenderError, check_buffer, make_room};
-use crate::scene::{Layer, LayerSet, View};
+use crate::scene::{Layer, LayerSet, Scene, View};
 
 /// One layer of a frame: [`Layer::channels`] numbers for each pixel, side by side, row by row from the top.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,8 +51,17 @@ impl Form {
             Self::Rgb8 | Self::Rgb16 => true,
             Self::Layers(layers) => layers
                 .iter()
-                .any(|layer| !matches!(layer, Layer::Coverage | Layer::Order | Layer::Alpha)),
+                .any(|layer| !matches!(layer, Layer::Coverage | Layer::Order | Layer::Sky | Layer::SkyUv | Layer::Alpha)),
         }
+    }
+
+    /// Whether it shows a scene's sky, or data of it.
+    pub fn needs_escape(self, scene: &Scene) -> bool {
+        let has_directions = match self {
+            Self::Layers(layers) => layers.has(Layer::Sky) || layers.has(Layer::SkyUv),
+            _ => false,
+        };
+        has_directions || (self.shows_light() && scene.sky().is_some())
     }
 
     /// Whether it shows light.

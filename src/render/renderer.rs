@@ -10,9 +10,10 @@ use super::frame::{Threads, Workspace};
 use super::ink::SharedColours;
 use super::planes::{Form, FrameMemory, Plane, Target};
 use super::scene_frame::{FrameReport, SceneFrame};
+use super::sky::{FrameSky, SharedSky, SkyAtRadius};
 use crate::isoradial::{CurveSpec, Isoradials, RadiusMap};
 use crate::orbit::path::SweptAngles;
-use crate::scene::{Animation, LayerSet, Light, Scene, Tone, View};
+use crate::scene::{Animation, LayerSet, Light, Scene, Sky, Stars, Tone, View};
 use crate::table::{Lookup, Table};
 
 /// Draws scenes.
@@ -46,6 +47,10 @@ pub struct Renderer<A> {
     curves: Option<Isoradials>,
     /// Their map, once a scene has needed it.
     map: Option<RadiusMap>,
+    /// The sky at their radius, once a scene has needed it, for these stars.
+    sky: Option<(Option<Stars>, SkyAtRadius)>,
+    /// The sky of the scene before, and what its files hold.
+    source: (Option<Sky>, SharedSky),
     /// Light, exposure and tone of the scene before, and their colours.
     shown: Option<(Option<Light>, u64, Tone)>,
     colours: SharedColours,
@@ -66,6 +71,8 @@ impl<A: SweptAngles> Renderer<A> {
             angles,
             curves: None,
             map: None,
+            sky: None,
+            source: (None, SharedSky::default()),
             shown: None,
             colours: SharedColours::default(),
             workspace: Workspace::default(),
@@ -170,6 +177,7 @@ impl<A: SweptAngles> Renderer<A> {
         {
             self.curves = None;
             self.map = None;
+            self.sky = None;
         }
         let angles = &self.angles;
         let curves = self
@@ -184,11 +192,27 @@ impl<A: SweptAngles> Renderer<A> {
             self.shown = Some(shown);
             self.colours = SharedColours::default();
         }
+        if self.source.0.as_ref() != scene.sky() {
+            self.source = (scene.sky().cloned(), SharedSky::default());
+        }
+        let source = self.source.1.source(scene, form)?;
+        let sky = if form.needs_escape(scene) {
+            let stars = scene.sky().and_then(|sky| sky.stars.as_ref());
+            if self.sky.as_ref().is_some_and(|(of, _)| of.as_ref() != stars) {
+                self.sky = None;
+            }
+            let new = || (stars.cloned(), SkyAtRadius::new(scene, view, angles));
+            let (_, radius) = self.sky.get_or_insert_with(new);
+            Some(FrameSky::at_radius(radius, scene, view, source))
+        } else {
+            None
+        };
         let frame = SceneFrame {
             scene,
             view,
             curves,
             map: self.map.as_ref(),
+            sky,
             colours: self.colours.of(scene, form),
             angles,
             threads: Threads::All,

@@ -9,6 +9,7 @@ use super::pixelwise;
 use super::planes::Target;
 use super::shaded::{ROWS_OF_BAND, ShadedFrame};
 use super::shader::Shader;
+use super::sky::FrameSky;
 use crate::isoradial::{EdgeError, Isoradials, RadiusMap};
 use crate::orbit::path::SweptAngles;
 use crate::scene::{Scene, View};
@@ -33,8 +34,10 @@ pub(super) struct SceneFrame<'a, A> {
     pub(super) curves: &'a Isoradials,
     /// Where the form needs one.
     pub(super) map: Option<&'a RadiusMap>,
-    /// Of a scene with light.
+    /// Of a scene with light or a sky.
     pub(super) colours: Option<&'a Colours>,
+    /// Where the form shows the sky or data of it.
+    pub(super) sky: Option<FrameSky<'a>>,
     pub(super) angles: &'a A,
     pub(super) threads: Threads,
 }
@@ -59,6 +62,7 @@ impl<A: SweptAngles> SceneFrame<'_, A> {
                 view: self.view,
                 orbits: self.angles,
                 colours: self.colours,
+                sky: self.sky.as_ref(),
             };
             frame.draw(&|| (), target)?;
         } else {
@@ -102,7 +106,7 @@ impl<A: SweptAngles> SceneFrame<'_, A> {
                 self.shade(workspace, &ink, Rows::bands(samples, stride, rows));
             }
             Target::Planes(planes, layers) => {
-                let ink = Data::new(layers, self.colours, self.scene.light(), averaging)?;
+                let ink = Data::new(layers, self.colours, self.scene, averaging)?;
                 self.shade(workspace, &ink, PlaneRows::bands(planes, width, rows));
             }
         }
@@ -121,7 +125,8 @@ impl<A: SweptAngles> SceneFrame<'_, A> {
         let gaps = |order, h, meets| curves.u_in_gap(order, h, meets, self.angles);
         let shader = Shader::new(self.view, curves, map, &gaps);
         let how = (self.scene.antialias(), self.threads);
-        ShadedFrame::new(workspace.for_shading(), &shader, how).paint(ink, bands);
+        let seen = (&shader, self.sky.as_ref());
+        ShadedFrame::new(workspace.for_shading(), seen, how).paint(ink, bands);
     }
 
     fn colours(&self) -> Result<&Colours, RenderError> {

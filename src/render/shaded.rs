@@ -14,6 +14,7 @@ use super::painter::{Painter, Partial};
 use super::path::OutlinePath;
 use super::projection::Projection;
 use super::shader::Shader;
+use super::sky::{FrameSky, StarImages};
 use super::tiles::{Run, TILE};
 use crate::isoradial::Boundary;
 
@@ -31,6 +32,7 @@ const LEAST: i64 = 16;
 pub(super) struct ShadedWorkspace {
     outlines: Vec<(u32, BandedOutline)>,
     scratch: Vec<ShadedScratch>,
+    stars: StarImages,
 }
 
 /// What a thread draws a band with.
@@ -42,6 +44,13 @@ struct ShadedScratch {
     parts: Vec<Part>,
     /// For hard edges: the order of each pixel of the band.
     orders: Vec<u8>,
+    /// Pixels that the disk covers wholly, and those that it does not.
+    covered: Vec<Run>,
+    free: Vec<Run>,
+    /// Pixels whose centres see the sky, for data of it.
+    centres: Vec<Run>,
+    /// The sky's light.
+    light: Vec<[f32; 3]>,
 }
 
 /// No order, in [`ShadedScratch::orders`].
@@ -52,6 +61,7 @@ pub(super) struct ShadedFrame<'a> {
     half: &'a mut OutlinePath,
     workspace: &'a mut ShadedWorkspace,
     shader: &'a Shader<'a>,
+    sky: Option<&'a FrameSky<'a>>,
     smooth: bool,
     threads: Threads,
 }
@@ -60,13 +70,14 @@ impl<'a> ShadedFrame<'a> {
     /// A frame with smooth edges or hard ones, on some threads.
     pub(super) fn new(
         (half, workspace): (&'a mut OutlinePath, &'a mut ShadedWorkspace),
-        shader: &'a Shader<'a>,
+        (shader, sky): (&'a Shader<'a>, Option<&'a FrameSky<'a>>),
         (smooth, threads): (bool, Threads),
     ) -> Self {
         Self {
             half,
             workspace,
             shader,
+            sky,
             smooth,
             threads,
         }
@@ -86,20 +97,36 @@ impl<'a> ShadedFrame<'a> {
         let is_meaningful = self.draw_outlines(rows);
         let workspace = self.workspace;
         let outlines = &workspace.outlines[..curves.orders().len()];
+        let sky = self.sky;
+        let stars = &mut workspace.stars;
+        if let Some(sky) = sky {
+            sky.find_stars(stars, rows, self.threads);
+        }
+        let stars = &*stars;
         let scratch = &mut workspace.scratch;
         scratch.resize_with(scratch.len().max(count), Default::default);
         on_threads(&mut scratch[..count], bands, |scratch, band, mut memory| {
             let top = band * rows;
             let rows = rows.min(height - top);
             let painter = Painter { shader, ink, top };
+            let sky = sky.map(|sky| BandSky { sky, stars, band });
             if smooth && is_meaningful && !outlines.is_empty() {
-                scratch.paint_smooth(outlines, band, rows, &painter, &mut memory);
+                scratch.paint_smooth(outlines, rows, &painter, sky.as_ref(), (band, &mut memory));
             } else {
                 let outlines = is_meaningful.then_some(outlines);
                 scratch.find_orders(outlines, band, rows, &painter);
-                painter.clear_but(rows, &[], &mut memory);
+                painter.clear(rows, &mut memory);
+                scratch.free.clear();
+                let width = view.width() as usize;
+                for (row, orders) in scratch.orders.chunks_exact(width).enumerate() {
+                    runs_of(orders, NONE, row, &mut scratch.free);
+                }
                 for shown in curves.orders() {
                     scratch.paint_order(shown.number(), rows, &painter, &mut memory);
+                }
+                if let Some(sky) = &sky {
+                    scratch.paint_sky(rows, &painter, sky, &mut memory);
+                    ink.put_directions(&mut memory, &sky.sky.shader, (top, rows), &scratch.free);
                 }
             }
             ink.finish(&mut memory, shader, top);
@@ -138,25 +165,91 @@ impl ShadedScratch {
     fn paint_smooth<I: Ink<N>, const N: usize>(
         &mut self,
         outlines: &Outlines,
-        band: usize,
         rows: usize,
         painter: &Painter<'_, I, N>,
-        memory: &mut I::Band<'_>,
+        sky: Option<&BandSky<'_>>,
+        (band, memory): (usize, &mut I::Band<'_>),
     ) {
         self.partial.clear();
-        for (i, (order, outline)) in outlines.iter().enumerate() {
+        self.covered.clear();
+        painter.clear(rows, memory);
+        for (order, outline) in outlines {
             self.runs.clear();
             outline.draw(band, &mut self.band);
             let (runs, partial) = (&mut self.runs, &mut self.partial);
             self.band.rows(|cells, row, left| {
                 collect(cells, row, left, *order, runs, partial);
             });
-            if i == 0 {
-                painter.clear_but(rows, &[], memory);
-            }
             painter.paint_runs(*order, rows, &self.runs, memory);
+            if sky.is_some() {
+                self.covered.extend_from_slice(&self.runs);
+            }
         }
-        painter.paint_partial(&mut self.partial, &mut self.parts, memory);
+        if let Some(sky) = sky {
+            let width = painter.shader.view.width();
+            self.covered.sort_unstable_by_key(|run| (run.row, run.from));
+            complement(&self.covered, (width, rows as u32), &mut self.free);
+            self.paint_sky(rows, painter, sky, memory);
+        }
+        let width = painter.shader.view.width() as usize;
+        let beside = |row: usize, column: usize| {
+            let light = self.light.get(row * width + column);
+            sky.and(light).copied().unwrap_or_default()
+        };
+        painter.paint_partial(&mut self.partial, &mut self.parts, beside, memory);
+        if let Some(sky) = sky
+            && painter.ink.needs_directions()
+        {
+            self.find_centres(painter);
+            let place = (painter.top, rows);
+            painter
+                .ink
+                .put_directions(memory, &sky.sky.shader, place, &self.centres);
+        }
+    }
+
+    /// Paints the sky beside what the disk covers wholly.
+    fn paint_sky<I: Ink<N>, const N: usize>(
+        &mut self,
+        rows: usize,
+        painter: &Painter<'_, I, N>,
+        sky: &BandSky<'_>,
+        memory: &mut I::Band<'_>,
+    ) {
+        let (view, top) = (painter.shader.view, painter.top);
+        let width = view.width() as usize;
+        self.light.clear();
+        self.light.resize(width * rows, [0.0; 3]);
+        if !sky.sky.paint((top, rows), &self.free, &mut self.light) {
+            return;
+        }
+        sky.sky
+            .add_stars(sky.stars, (sky.band, top, rows), &mut self.light);
+        for run in &self.free {
+            let (row, from, to) = (run.row as usize, run.from as usize, run.to as usize);
+            let light = &self.light[row * width..][from..to];
+            painter.ink.put_light(memory, row, from, light);
+        }
+    }
+
+    /// Finds the pixels whose centres do not see the disk.
+    fn find_centres<I, const N: usize>(&mut self, painter: &Painter<'_, I, N>) {
+        self.covered.clear();
+        for pixel in &self.partial {
+            let place = (
+                f64::from(pixel.column) + 0.5,
+                (painter.top + pixel.row as usize) as f64 + 0.5,
+            );
+            if painter.shader.front_at(place).is_some() {
+                self.covered.push(Run {
+                    row: pixel.row,
+                    from: pixel.column,
+                    to: pixel.column + 1,
+                });
+            }
+        }
+        self.covered.sort_unstable_by_key(|run| (run.row, run.from));
+        without(&self.free, &self.covered, &mut self.centres);
     }
 
     /// Finds the order that the centre of each pixel of a band sees: from outlines, or by asking each.
@@ -219,6 +312,53 @@ impl ShadedScratch {
             runs_of(orders, order as u8, row, &mut self.runs);
         }
         painter.paint_runs(order, rows, &self.runs, memory);
+    }
+}
+
+/// The sky of a band.
+struct BandSky<'a> {
+    sky: &'a FrameSky<'a>,
+    stars: &'a StarImages,
+    band: usize,
+}
+
+/// Collects the pixels of rows that are in no run; runs are sorted and do not overlap.
+fn complement(runs: &[Run], (width, rows): (u32, u32), rest: &mut Vec<Run>) {
+    rest.clear();
+    let mut runs = runs.iter().peekable();
+    for row in 0..rows {
+        let mut from = 0;
+        while let Some(run) = runs.next_if(|run| run.row == row) {
+            if run.from > from {
+                let to = run.from;
+                rest.push(Run { row, from, to });
+            }
+            from = from.max(run.to);
+        }
+        if from < width {
+            let to = width;
+            rest.push(Run { row, from, to });
+        }
+    }
+}
+
+/// Collects the pixels of runs that are not among others; both are sorted.
+fn without(runs: &[Run], others: &[Run], rest: &mut Vec<Run>) {
+    rest.clear();
+    let mut others = others.iter().peekable();
+    for &Run { row, mut from, to } in runs {
+        while let Some(other) = others.next_if(|other| (other.row, other.from) < (row, to)) {
+            if other.row == row && other.to > from {
+                if other.from > from {
+                    let to = other.from;
+                    rest.push(Run { row, from, to });
+                }
+                from = other.to;
+            }
+        }
+        if from < to {
+            rest.push(Run { row, from, to });
+        }
     }
 }
 

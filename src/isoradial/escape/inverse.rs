@@ -1,6 +1,6 @@
 //! From a place in the sky to the rays that leave towards it.
 
-use super::{COEFFICIENTS, EscapeCurve};
+use super::{EscapeCurve, value_and_slope};
 use crate::isoradial::chebyshev::Chebyshev;
 
 /// Coefficients of the polynomial that guesses a root; one step of Newton's makes it exact.
@@ -38,7 +38,7 @@ impl EscapeCurve {
                     // Newton's method from the node before; Φ is convex and falls with t.
                     let angle = low + (high - low) * 0.5 * (1.0 - node);
                     for _ in 0..NEWTON_STEPS {
-                        let (value, slope) = horner(powers, t);
+                        let (value, slope) = value_and_slope(powers, t);
                         t = (t + (angle - value) / slope).clamp(-1.0, 1.0);
                     }
                     t
@@ -47,19 +47,40 @@ impl EscapeCurve {
             let powers = Chebyshev::powers(&chebyshev.coefficients(&values));
             self.inverses.push(core::array::from_fn(|i| powers[i]));
         }
+        let shares = (self.ends[self.octaves.len()] * SHARES_PER_RADIAN) as usize + 2;
+        let octave = |share: usize| self.octave_from(0, share as f64 / SHARES_PER_RADIAN);
+        self.shares = (0..shares).map(|share| octave(share) as u32).collect();
+    }
+
+    /// Returns the octave in which rays sweep `angle`, at least `first`.
+    #[inline]
+    fn octave_from(&self, first: usize, angle: f64) -> usize {
+        first + self.ends[first + 1..].partition_point(|&end| end <= angle)
+    }
+
+    /// Returns the octave in which rays sweep `angle`.
+    #[inline]
+    fn octave_of_angle(&self, angle: f64) -> usize {
+        let share = (angle * SHARES_PER_RADIAN) as usize;
+        let Some(&[first, last]) = self.shares.get(share..share + 2).and_then(<[u32]>::first_chunk)
+        else {
+            return self.octaves.len();
+        };
+        let (first, last) = (first as usize, last as usize);
+        first + self.ends[first + 1..=last].partition_point(|&end| end <= angle)
     }
 
     /// Returns the ray that sweeps `angle` on its way out, at least 0.
     pub fn image(&self, angle: f64) -> Image {
-        let octave = self.ends[1..].partition_point(|&end| end <= angle);
+        let octave = self.octave_of_angle(angle);
         let (x, rate) = if octave < self.octaves.len() {
             let (low, high) = (self.ends[octave], self.ends[octave + 1]);
             let place = 1.0 - 2.0 * (angle - low) / (high - low);
             let inverse = &self.inverses[octave];
             let guess = inverse.iter().rev().fold(0.0, |sum, c| sum * place + c);
-            let (value, slope) = horner(&self.octaves[octave], guess);
+            let (value, slope) = value_and_slope(&self.octaves[octave], guess);
             let m = 0.5 * ((guess + (angle - value) / slope).clamp(-1.0, 1.0) + 3.0);
-            (libm::ldexp(m, -1 - octave as i32), -2.0 * m * slope)
+            (m * power_of_half(octave + 1), -2.0 * m * slope)
         } else {
             let x = libm::exp(self.ends[octave] - angle);
             (libm::ldexp(x, -(octave as i32)), 1.0)
@@ -74,16 +95,14 @@ impl EscapeCurve {
     }
 }
 
+/// The angle swept is cut into this many parts a radian, to find its octave.
+const SHARES_PER_RADIAN: f64 = 8.0;
+
+/// Returns 2⁻ⁿ, for n below 1000.
+#[inline(always)]
+fn power_of_half(n: usize) -> f64 {
+    f64::from_bits((1023 - n as u64) << 52)
+}
+
 /// The most steps that a root takes from its neighbour.
 const NEWTON_STEPS: usize = 6;
-
-/// Returns a polynomial and its derivative.
-#[inline(always)]
-fn horner(powers: &[f64; COEFFICIENTS], t: f64) -> (f64, f64) {
-    let (mut value, mut slope) = (powers[COEFFICIENTS - 1], 0.0);
-    for c in powers[..COEFFICIENTS - 1].iter().rev() {
-        slope = slope * t + value;
-        value = value * t + c;
-    }
-    (value, slope)
-}

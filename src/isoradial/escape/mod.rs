@@ -33,8 +33,8 @@ use crate::orbit::invariants::Orbit;
 use crate::orbit::path::SweptAngles;
 use crate::orbit::{OrbitError, Orbits, Ray};
 
-/// Coefficients of an octave's polynomial. Chebyshev's fall by 5.8 each, so that what is left out is below 1e-11.
-const COEFFICIENTS: usize = 16;
+/// Coefficients of an octave's polynomial. Chebyshev's fall by 5.8 each, so that what is left out is below 1e-10.
+const COEFFICIENTS: usize = 13;
 
 /// The octaves of x down to a distance from the critical ray of 2⁻⁴⁶ of the smallest angle that matters.
 const OCTAVES: usize = 46;
@@ -55,6 +55,8 @@ pub struct EscapeCurve {
     ends: Vec<f64>,
     /// For each octave, the powers of t as a function of Φ, −1 to 1 across the octave.
     inverses: Vec<[f64; INVERSE_COEFFICIENTS]>,
+    /// For each share of a radian of Φ, the octave that it begins in; the last share ends with the last octave.
+    shares: Vec<u32>,
 }
 
 /// A ray that escapes.
@@ -112,6 +114,7 @@ impl EscapeCurve {
             octaves: Vec::new(),
             ends: vec![0.0],
             inverses: Vec::new(),
+            shares: Vec::new(),
         };
         // Far away, angles matter down to a share of the hole's size, `ψ_c = 2/longest`.
         let far = 2.0 * libm::log2(longest.max(1.0));
@@ -185,7 +188,7 @@ impl EscapeCurve {
 
     /// Returns how the ray with inward part `z` and transverse length `s` escapes; `None` where it is captured.
     ///
-    /// The angle is as right as the method's angles, and 1e-11 radians.
+    /// The angle is as right as the method's angles, and 1e-10 radians.
     #[inline]
     pub fn at(&self, z: f64, s: f64) -> Option<Escape> {
         let half = self.half_tangent(z, s);
@@ -207,18 +210,34 @@ impl EscapeCurve {
                 rate: 1.0 / per_octave,
             };
         };
-        let t = 2.0 * m - 3.0;
-        let (mut value, mut slope) = (powers[COEFFICIENTS - 1], 0.0);
-        for c in powers[..COEFFICIENTS - 1].iter().rev() {
-            slope = slope * t + value;
-            value = value * t + c;
-        }
+        let (value, slope) = value_and_slope(powers, 2.0 * m - 3.0);
         Escape {
             angle: value.max(0.0),
             // dt = 2 m d(ln x)
             rate: -2.0 * m * slope / per_octave,
         }
     }
+}
+
+/// Returns a polynomial and its derivative. Its even and its odd powers are summed side by side.
+#[inline(always)]
+fn value_and_slope(powers: &[f64; COEFFICIENTS], t: f64) -> (f64, f64) {
+    let square = t * t;
+    let pairs = powers[..COEFFICIENTS - 1].as_chunks::<2>().0;
+    let last = powers[COEFFICIENTS - 1];
+    // Of even + t odd, and of their derivatives to t².
+    let (mut even, mut odd) = (last, 0.0);
+    let (mut even_slope, mut odd_slope) = (0.0, 0.0);
+    for [c, d] in pairs.iter().rev() {
+        even_slope = even_slope * square + even;
+        odd_slope = odd_slope * square + odd;
+        even = even * square + c;
+        odd = odd * square + d;
+    }
+    (
+        even + t * odd,
+        odd + 2.0 * t * (even_slope + t * odd_slope),
+    )
 }
 
 /// Returns the octave of x in (0, 1], and the place across it, 1 to 2.

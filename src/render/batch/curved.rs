@@ -12,7 +12,9 @@ use crate::render::frame::{Threads, Workspace};
 use crate::render::ink::SharedColours;
 use crate::render::planes::FrameMemory;
 use crate::render::scene_frame::SceneFrame;
+use crate::render::sky::{FrameSky, SharedSky, SkyAtRadius};
 use crate::scene::{Animation, View};
+use crate::sky::SkySource;
 
 /// Frames from curves, which come from swept angles: exact ones, or those of a table.
 #[derive(Debug)]
@@ -22,6 +24,7 @@ pub struct Curved<'a, A> {
     /// The block of the frame drawn last.
     block: Mutex<Option<Arc<Block>>>,
     colours: SharedColours,
+    sky: SharedSky,
 }
 
 impl<'a, A: SweptAngles> Curved<'a, A> {
@@ -32,6 +35,16 @@ impl<'a, A: SweptAngles> Curved<'a, A> {
             angles,
             block: Mutex::new(None),
             colours: SharedColours::default(),
+            sky: SharedSky::default(),
+        }
+    }
+
+    /// The same frames, with a sky that has been read.
+    #[must_use]
+    pub fn with_sky(self, source: Arc<SkySource>) -> Self {
+        Self {
+            sky: SharedSky::of(source),
+            ..self
         }
     }
 
@@ -62,21 +75,25 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
         let form = memory.form();
         let target = memory.target(&view)?;
         let block = self.block(number);
-        let (own, own_map);
-        let (curves, map) = match block.span(number) {
+        let source = self.sky.source(&scene, form)?;
+        let (own, own_map, own_sky);
+        let sky = || SkyAtRadius::new(&scene, &view, self.angles);
+        let (curves, map, sky) = match block.span(number) {
             Some(span) if span.is_shared() => {
                 let draw = || Isoradials::new(&span.spec, self.angles);
                 let curves = span.curves.get_or_init(draw);
                 let map = || RadiusMap::new(curves, self.angles);
                 let map = form.needs_map().then(|| span.map.get_or_init(map));
-                (curves, map)
+                let needs_escape = form.needs_escape(&scene);
+                (curves, map, needs_escape.then(|| span.sky.get_or_init(sky)))
             }
             _ => {
                 let spec = CurveSpec::new(&scene, &view, scene.tolerance());
                 own = Isoradials::new(&spec, self.angles);
                 let map = || RadiusMap::new(&own, self.angles);
                 own_map = form.needs_map().then(map);
-                (&own, own_map.as_ref())
+                own_sky = form.needs_escape(&scene).then(sky);
+                (&own, own_map.as_ref(), own_sky.as_ref())
             }
         };
         let frame = SceneFrame {
@@ -84,6 +101,7 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
             view: &view,
             curves,
             map,
+            sky: sky.map(|sky| FrameSky::at_radius(sky, &scene, &view, source)),
             colours: self.colours.of(&scene, form),
             angles: self.angles,
             threads: if on_all_threads {

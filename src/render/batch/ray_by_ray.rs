@@ -1,5 +1,6 @@
 //! Frames without curves: each pixel's ray is followed by itself.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::{FrameError, Frames};
@@ -7,8 +8,10 @@ use crate::orbit::Orbits;
 use crate::render::frame::Workspace;
 use crate::render::ink::SharedColours;
 use crate::render::planes::FrameMemory;
-use crate::render::{FrameReport, pixelwise};
+use crate::render::sky::{FrameSky, SharedSky, SkyAtRadius};
+use crate::render::{FrameReport, RenderError, pixelwise};
 use crate::scene::{Animation, View};
+use crate::sky::SkySource;
 
 /// Frames whose pixels show what the rays of their centres meet, by some method.
 pub struct RayByRay<'a, O> {
@@ -16,6 +19,7 @@ pub struct RayByRay<'a, O> {
     orbits: &'a O,
     row_done: &'a (dyn Fn() + Sync),
     colours: SharedColours,
+    sky: SharedSky,
 }
 
 impl<'a, O: Orbits> RayByRay<'a, O> {
@@ -26,6 +30,16 @@ impl<'a, O: Orbits> RayByRay<'a, O> {
             orbits,
             row_done,
             colours: SharedColours::default(),
+            sky: SharedSky::default(),
+        }
+    }
+
+    /// The same frames, with a sky that has been read.
+    #[must_use]
+    pub fn with_sky(self, source: Arc<SkySource>) -> Self {
+        Self {
+            sky: SharedSky::of(source),
+            ..self
         }
     }
 }
@@ -42,11 +56,22 @@ impl<O: Orbits> Frames for RayByRay<'_, O> {
         let scene = self.animation.frame(number)?;
         let view = View::new(&scene);
         let form = memory.form();
+        let source = self.sky.source(&scene, form)?;
+        let radius = if form.needs_escape(&scene) {
+            let radius = SkyAtRadius::from_orbits(&scene, &view, self.orbits);
+            Some(radius.map_err(RenderError::from)?)
+        } else {
+            None
+        };
+        let sky = radius
+            .as_ref()
+            .map(|radius| FrameSky::at_radius(radius, &scene, &view, source));
         let frame = pixelwise::Frame {
             scene: &scene,
             view: &view,
             orbits: self.orbits,
             colours: self.colours.of(&scene, form),
+            sky: sky.as_ref(),
         };
         frame.draw(self.row_done, memory.target(&view)?)?;
         Ok(FrameReport {

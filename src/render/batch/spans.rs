@@ -6,6 +6,7 @@
 use std::sync::OnceLock;
 
 use crate::isoradial::{CurveSpec, Isoradials, RadiusMap};
+use crate::render::sky::SkyAtRadius;
 use crate::scene::{Animation, View};
 
 /// The number of frames in a block.
@@ -33,6 +34,8 @@ pub(super) struct Span {
     pub(super) curves: OnceLock<Isoradials>,
     /// Their map, built when a frame with light or data first needs it.
     pub(super) map: OnceLock<RadiusMap>,
+    /// The sky at their radius, computed when a frame that shows it first needs it.
+    pub(super) sky: OnceLock<SkyAtRadius>,
 }
 
 impl Block {
@@ -69,6 +72,7 @@ impl Block {
                     spec,
                     curves: OnceLock::new(),
                     map: OnceLock::new(),
+                    sky: OnceLock::new(),
                 });
             }
         }

@@ -16,6 +16,8 @@ pub(in crate::render) struct Colours {
     pub(in crate::render) radiance: RadianceTable,
     pub(in crate::render) display: DisplayTransform,
     pub(in crate::render) palette: Palette,
+    /// Whether all of the disk has radiance 1: it has no light of its own, and is before a sky.
+    pub(in crate::render) is_white: bool,
     /// How fast the logarithm of the hottest ring's light changes with its amplitude.
     slope: f64,
 }
@@ -24,16 +26,26 @@ pub(in crate::render) struct Colours {
 pub(super) type RowLight = [[f32; 3]; TILE.0];
 
 impl Colours {
-    /// Prepares the colours of a scene with light.
-    pub(in crate::render) fn new(light: Light, exposure: f64, tone: Tone) -> Self {
-        let exact = Radiance::new(light);
+    /// Prepares the colours of a scene, with light of the disk or without.
+    pub(in crate::render) fn new(light: Option<Light>, exposure: f64, tone: Tone) -> Self {
+        let exact = Radiance::new(light.unwrap_or(Light::Bolometric));
         let radiance = RadianceTable::new(&exact);
         let display = DisplayTransform::new(exposure, tone);
         Self {
             palette: Palette::new(&radiance, &display),
             radiance,
             display,
+            is_white: light.is_none(),
             slope: exact.slope(1.0),
+        }
+    }
+
+    /// Returns the linear light of an amplitude.
+    pub(in crate::render) fn light(&self, amplitude: f32) -> [f32; 3] {
+        if self.is_white {
+            [1.0; 3]
+        } else {
+            self.radiance.rgb(amplitude)
         }
     }
 
@@ -76,13 +88,24 @@ impl Colours {
         light
     }
 
-    /// Returns the linear light of a pixel that is covered in part, times the share.
-    pub(super) fn mixed(&self, parts: &[Part], mixture: &Mixture<'_>) -> [f32; 3] {
-        let mut sum = [0.0; 3];
+    /// Returns the linear light of a pixel that is covered in part: that of the disk times its share, and of what is
+    /// `beside` it times the rest.
+    pub(super) fn mixed(
+        &self,
+        parts: &[Part],
+        mixture: &Mixture<'_>,
+        beside: [f32; 3],
+    ) -> [f32; 3] {
+        let covered = parts.iter().map(|part| part.share).sum::<f32>().min(1.0);
+        let mut sum = beside.map(|c| c * (1.0 - covered));
         for part in parts {
-            let mean = mixture.mean(part.order, f64::from(part.share), |y| {
-                self.radiance.rgb(y as f32)
-            });
+            let mean = if self.is_white {
+                [1.0; 3]
+            } else {
+                mixture.mean(part.order, f64::from(part.share), |y| {
+                    self.radiance.rgb(y as f32)
+                })
+            };
             for (sum, c) in sum.iter_mut().zip(mean) {
                 *sum += part.share * c;
             }
@@ -97,11 +120,11 @@ impl Colours {
 pub(in crate::render) struct SharedColours(OnceLock<Colours>);
 
 impl SharedColours {
-    /// The colours of a scene, where it has light and the form shows it.
+    /// The colours of a scene, where it has light or a sky and the form shows it.
     pub(in crate::render) fn of(&self, scene: &Scene, form: Form) -> Option<&Colours> {
-        let light = scene.light()?;
-        let new = || Colours::new(light, scene.exposure(), scene.tone());
-        form.shows_light().then(|| self.0.get_or_init(new))
+        let new = || Colours::new(scene.light(), scene.exposure(), scene.tone());
+        let is_shown = form.shows_light() && (scene.light().is_some() || scene.sky().is_some());
+        is_shown.then(|| self.0.get_or_init(new))
     }
 }
 

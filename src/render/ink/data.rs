@@ -2,6 +2,7 @@
 
 use std::sync::LazyLock;
 
+use super::directions::{paint_directions, set_direction};
 use super::{Averaging, Colours, Ink, Part, Quantities, Stretch, amplitude};
 use crate::light::{Sight, emission_cosine};
 use crate::render::error::RenderError;
@@ -9,7 +10,9 @@ use crate::render::mixture::Mixture;
 use crate::render::patch::{Patch, PatchFit};
 use crate::render::planes::Plane;
 use crate::render::shader::{PlaceRay, Shader};
-use crate::scene::{Layer, LayerSet, Light};
+use crate::render::sky::{SkyShader, SkySight};
+use crate::render::tiles::Run;
+use crate::scene::{Layer, LayerSet, Light, Scene};
 
 /// Nodes a side of a patch.
 const NODES: usize = 9;
@@ -30,6 +33,8 @@ pub(in crate::render) struct Data<'a> {
     averaging: Averaging,
     /// The temperature of the hottest ring.
     temperature: f64,
+    /// Whether there is a sky, so that no pixel shows through.
+    has_sky: bool,
 }
 
 /// What is interpolated, in the order of the quantities.
@@ -60,7 +65,7 @@ impl Quantity {
             Layer::Redshift => Some(Self::Redshift),
             Layer::EmissionCosine => Some(Self::EmissionCosine),
             Layer::Temperature | Layer::Colour => Some(Self::Amplitude),
-            Layer::Coverage | Layer::Order | Layer::Alpha => None,
+            Layer::Coverage | Layer::Order | Layer::Sky | Layer::SkyUv | Layer::Alpha => None,
         }
     }
 
@@ -73,7 +78,7 @@ impl Quantity {
 /// A band of each layer.
 pub(in crate::render) struct PlaneRows<'b> {
     planes: [Option<(Layer, &'b mut [f32])>; MOST_LAYERS],
-    width: usize,
+    pub(super) width: usize,
 }
 
 impl<'b> PlaneRows<'b> {
@@ -98,7 +103,7 @@ impl<'b> PlaneRows<'b> {
         })
     }
 
-    fn iter(&mut self) -> impl Iterator<Item = (Layer, &mut [f32])> {
+    pub(super) fn iter(&mut self) -> impl Iterator<Item = (Layer, &mut [f32])> {
         let planes = self.planes.iter_mut().flatten();
         planes.map(|(layer, plane)| (*layer, &mut **plane))
     }
@@ -110,15 +115,13 @@ impl<'a> Data<'a> {
     pub(in crate::render) fn new(
         layers: LayerSet,
         colours: Option<&'a Colours>,
-        light: Option<Light>,
+        scene: &Scene,
         averaging: Averaging,
     ) -> Result<Self, RenderError> {
-        let has_light = match light {
-            None => !layers.has(Layer::Temperature) && !layers.has(Layer::Colour),
-            Some(Light::Bolometric) => !layers.has(Layer::Temperature),
-            Some(Light::BlackBody { .. }) => true,
-        };
-        if !has_light {
+        let light = scene.light();
+        let has_temperature = matches!(light, Some(Light::BlackBody { .. }));
+        let lacks = |layer, has: bool| layers.has(layer) && !has;
+        if lacks(Layer::Temperature, has_temperature) || lacks(Layer::Colour, colours.is_some()) {
             return Err(RenderError::NoLight);
         }
         let temperature = match light {
@@ -130,6 +133,7 @@ impl<'a> Data<'a> {
             colours,
             averaging,
             temperature,
+            has_sky: scene.sky().is_some(),
         })
     }
 
@@ -159,10 +163,39 @@ impl<'a> Data<'a> {
         }
     }
 
+    /// Sets the direction in which a pixel's ray leaves.
+    pub(in crate::render) fn put_direction(
+        &self,
+        band: &mut PlaneRows<'_>,
+        pixel: usize,
+        sky: &SkyShader<'_>,
+        sight: &SkySight,
+    ) {
+        if self.needs_directions() {
+            set_direction(band, pixel, sky, sight);
+        }
+    }
+
+    /// Sets what no pixel of a sky shows through.
+    pub(in crate::render) fn finish_sky(&self, band: &mut PlaneRows<'_>) {
+        let planes = band.iter().filter(|(layer, _)| *layer == Layer::Alpha);
+        planes.for_each(|(_, plane)| {
+            if self.has_sky {
+                plane.fill(1.0);
+            }
+        });
+    }
+
     /// The quantities that are asked for.
     fn asked(&self) -> impl Iterator<Item = Quantity> {
         let all = Quantity::ALL.into_iter();
-        all.filter(|quantity| quantity.is_of(self.layers))
+        let is_white = self.colours.is_some_and(|colours| colours.is_white);
+        let layers = if is_white {
+            self.layers.without(Layer::Colour)
+        } else {
+            self.layers
+        };
+        all.filter(move |quantity| quantity.is_of(layers))
     }
 
     /// The place of a quantity among those that are asked for.
@@ -191,10 +224,11 @@ impl<'a> Data<'a> {
                 (Layer::Azimuth, Some(azimuth)) => plane[pixel] = turned(azimuth as f32),
                 (Layer::Temperature, Some(y)) => plane[pixel] = self.kelvin(y as f32),
                 (Layer::Colour, Some(y)) => {
-                    let light = |colours: &Colours| colours.radiance.rgb(y as f32);
+                    let light = |colours: &Colours| colours.light(y as f32);
                     let light = self.colours.map_or([0.0; 3], light);
                     plane[3 * pixel..][..3].copy_from_slice(&light);
                 }
+                (Layer::Colour, None) => plane[3 * pixel..][..3].fill(1.0),
                 (_, Some(value)) => plane[pixel] = value as f32,
                 (_, None) => {}
             }
@@ -260,7 +294,35 @@ impl Ink<NODES> for Data<'_> {
         }
     }
 
+    fn put_light(&self, band: &mut Self::Band<'_>, row: usize, from: usize, light: &[[f32; 3]]) {
+        let first = row * band.width + from;
+        for (layer, plane) in band.iter() {
+            if layer == Layer::Colour {
+                plane[3 * first..][..3 * light.len()].copy_from_slice(light.as_flattened());
+            }
+        }
+    }
+
+    fn needs_directions(&self) -> bool {
+        self.layers.has(Layer::Sky) || self.layers.has(Layer::SkyUv)
+    }
+
+    fn put_directions(
+        &self,
+        band: &mut Self::Band<'_>,
+        sky: &SkyShader<'_>,
+        rows: (usize, usize),
+        runs: &[Run],
+    ) {
+        if self.needs_directions() {
+            paint_directions(band, sky, rows, runs);
+        }
+    }
+
     fn finish(&self, band: &mut Self::Band<'_>, shader: &Shader<'_>, top: usize) {
+        if self.has_sky {
+            return self.finish_sky(band);
+        }
         let width = band.width;
         for (layer, plane) in band.iter() {
             if layer == Layer::Alpha {
@@ -319,6 +381,9 @@ impl Ink<NODES> for Data<'_> {
         let (least, greatest) = ((1.0 / inner) as f32, (1.0 / outer) as f32);
         let first = stretch.row * band.width;
         for (layer, plane) in band.iter() {
+            if matches!(layer, Layer::Sky | Layer::SkyUv) {
+                continue;
+            }
             let channels = layer.channels();
             let pixels = &mut plane[(first + from) * channels..(first + to) * channels];
             let place = Quantity::of(layer).and_then(|quantity| self.place_of(quantity));
@@ -366,7 +431,8 @@ impl Ink<NODES> for Data<'_> {
     ) {
         if self.averaging == Averaging::Square && self.layers.has(Layer::Colour) {
             let whole = [Part { order, share: 1.0 }];
-            self.put_mixture(band, (row, column), &whole, &Mixture::new(shader, place));
+            let mixture = Mixture::new(shader, place);
+            self.put_mixture(band, (row, column), &whole, &mixture, [0.0; 3]);
             return;
         }
         let pixel = row * band.width + column;
@@ -381,6 +447,7 @@ impl Ink<NODES> for Data<'_> {
         (row, column): (usize, usize),
         parts: &[Part],
         mixture: &Mixture<'_>,
+        beside: [f32; 3],
     ) {
         let (pixel, shader) = (row * band.width + column, mixture.shader);
         if let Some((order, ray)) = mixture.nearest_covered() {
@@ -389,7 +456,9 @@ impl Ink<NODES> for Data<'_> {
         }
         let share = parts.iter().map(|part| part.share).sum::<f32>().min(1.0);
         let light = match self.colours {
-            Some(colours) if self.layers.has(Layer::Colour) => colours.mixed(parts, mixture),
+            Some(colours) if self.layers.has(Layer::Colour) => {
+                colours.mixed(parts, mixture, beside)
+            }
             _ => [0.0; 3],
         };
         for (layer, plane) in band.iter() {

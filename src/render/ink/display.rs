@@ -87,12 +87,19 @@ impl<T: Code> Ink<NODES> for Display<'_, T> {
         band.colours(row, from, to).fill([T::default(); 3]);
     }
 
+    fn put_light(&self, band: &mut Self::Band<'_>, row: usize, from: usize, light: &[[f32; 3]]) {
+        let pixels = band.colours(row, from, from + light.len());
+        for (pixel, light) in pixels.iter_mut().zip(light) {
+            *pixel = T::displayed(&self.colours.display, *light);
+        }
+    }
+
     fn fit(&self) -> &PatchFit<NODES> {
         &FIT
     }
 
     fn quantities(&self) -> usize {
-        1
+        usize::from(!self.colours.is_white)
     }
 
     fn tolerance(&self) -> f64 {
@@ -121,6 +128,10 @@ impl<T: Code> Ink<NODES> for Display<'_, T> {
         patch: &Patch<NODES>,
     ) {
         let pixels = band.colours(row, from, to);
+        if self.colours.is_white {
+            pixels.fill(T::displayed(&self.colours.display, [1.0; 3]));
+            return;
+        }
         let parts = self.colours.parts(patch, self.averaging);
         if parts > 1 {
             let light = self.colours.of_row((patch, 0), (from, to), y, parts);
@@ -146,7 +157,7 @@ impl<T: Code> Ink<NODES> for Display<'_, T> {
         if self.averaging == Averaging::Square {
             let whole = [Part { order, share: 1.0 }];
             let mixture = Mixture::new(shader, place);
-            self.put_mixture(band, pixel, &whole, &mixture);
+            self.put_mixture(band, pixel, &whole, &mixture, [0.0; 3]);
             return;
         }
         let ray = shader.ray(place);
@@ -163,8 +174,9 @@ impl<T: Code> Ink<NODES> for Display<'_, T> {
         (row, column): (usize, usize),
         parts: &[Part],
         mixture: &Mixture<'_>,
+        beside: [f32; 3],
     ) {
-        let light = self.colours.mixed(parts, mixture);
+        let light = self.colours.mixed(parts, mixture, beside);
         band.colours(row, column, column + 1)[0] = T::displayed(&self.colours.display, light);
     }
 }

@@ -2,6 +2,7 @@
 
 mod colours;
 mod data;
+mod directions;
 mod display;
 mod rows;
 
@@ -13,6 +14,8 @@ pub(super) use rows::Rows;
 use super::mixture::Mixture;
 use super::patch::{Patch, PatchFit};
 use super::shader::{PlaceRay, Shader};
+use super::sky::SkyShader;
+use super::tiles::Run;
 use crate::light::{Sight, flux};
 
 /// The most quantities that are interpolated.
@@ -46,6 +49,26 @@ pub(super) trait Ink<const N: usize>: Sync {
 
     /// Fills pixels of a row, from one column to before another one, with what is seen where there is no disk.
     fn clear(&self, band: &mut Self::Band<'_>, row: usize, columns: (usize, usize));
+
+    /// Paints the light of what is seen beside the disk, into pixels of a row from a column on.
+    fn put_light(&self, band: &mut Self::Band<'_>, row: usize, from: usize, light: &[[f32; 3]]);
+
+    /// Whether directions in the sky are among what is painted.
+    fn needs_directions(&self) -> bool {
+        false
+    }
+
+    /// Paints the directions in which the rays of pixels leave: of runs of a band, given by its first row and its
+    /// number of rows.
+    fn put_directions(
+        &self,
+        band: &mut Self::Band<'_>,
+        sky: &SkyShader<'_>,
+        rows: (usize, usize),
+        runs: &[Run],
+    ) {
+        let _ = (band, sky, rows, runs);
+    }
 
     /// Adds to a band, which begins at row `top` of the picture, what is seen beside the disk.
     fn finish(&self, band: &mut Self::Band<'_>, shader: &Shader<'_>, top: usize) {
@@ -95,13 +118,14 @@ pub(super) trait Ink<const N: usize>: Sync {
         place: (f64, f64),
     );
 
-    /// Paints a pixel that is covered in part.
+    /// Paints a pixel that is covered in part, with the light that is seen beside the disk.
     fn put_mixture(
         &self,
         band: &mut Self::Band<'_>,
         pixel: (usize, usize),
         parts: &[Part],
         mixture: &Mixture<'_>,
+        beside: [f32; 3],
     );
 }
 

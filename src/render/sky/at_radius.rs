@@ -1,0 +1,100 @@
+//! What frames of one camera radius have of the sky in common.
+
+use std::sync::{Arc, OnceLock};
+
+use super::FrameSky;
+use crate::isoradial::EscapeCurve;
+use crate::orbit::path::SweptAngles;
+use crate::orbit::{OrbitError, Orbits};
+use crate::render::RenderError;
+use crate::render::planes::Form;
+use crate::scene::{Scene, View};
+use crate::sky::{DEFAULT_MEMORY, SkySource, StarColours};
+
+/// The escape curve of a camera radius, and the colours of stars there.
+#[derive(Debug)]
+pub(in crate::render) struct SkyAtRadius {
+    pub(in crate::render) curve: EscapeCurve,
+    colours: StarColours,
+}
+
+impl SkyAtRadius {
+    /// Computes them from swept angles.
+    pub(in crate::render) fn new(scene: &Scene, view: &View, angles: &impl SweptAngles) -> Self {
+        let curve = EscapeCurve::new(view.u0(), view.slope_scale(), angles);
+        Self {
+            curve,
+            colours: star_colours(scene, view),
+        }
+    }
+
+    /// Computes them by following rays.
+    ///
+    /// # Errors
+    /// The method's error for a ray that it cannot follow.
+    pub(in crate::render) fn from_orbits(
+        scene: &Scene,
+        view: &View,
+        orbits: &impl Orbits,
+    ) -> Result<Self, OrbitError> {
+        Ok(Self {
+            curve: EscapeCurve::from_orbits(view.u0(), view.slope_scale(), orbits)?,
+            colours: star_colours(scene, view),
+        })
+    }
+}
+
+/// The colours of a scene's stars for its camera.
+fn star_colours(scene: &Scene, view: &View) -> StarColours {
+    let stars = scene.sky().and_then(|sky| sky.stars.as_ref());
+    let (shift, exposure) = stars.map_or((false, 0.0), |stars| (stars.shift, stars.exposure));
+    StarColours::new(if shift { 1.0 / view.clock_rate() } else { 1.0 }, exposure)
+}
+
+/// The sky of an animation, read when a frame first needs it: it is that of all its frames.
+#[derive(Debug, Default)]
+pub(in crate::render) struct SharedSky(OnceLock<Result<Arc<SkySource>, RenderError>>);
+
+impl SharedSky {
+    /// A sky that has been read.
+    pub(in crate::render) fn of(source: Arc<SkySource>) -> Self {
+        Self(OnceLock::from(Ok(source)))
+    }
+
+    /// The sky of a scene, where the form shows its light.
+    ///
+    /// # Errors
+    /// [`RenderError::Sky`] for a file that cannot be read.
+    pub(in crate::render) fn source(
+        &self,
+        scene: &Scene,
+        form: Form,
+    ) -> Result<Option<&SkySource>, RenderError> {
+        let Some(sky) = scene.sky().filter(|_| form.shows_light()) else {
+            return Ok(None);
+        };
+        let open = || {
+            let source = SkySource::open(sky, DEFAULT_MEMORY).map(Arc::new);
+            source.map_err(|error| RenderError::Sky(error.to_string()))
+        };
+        match self.0.get_or_init(open) {
+            Ok(source) => Ok(Some(source)),
+            Err(error) => Err(error.clone()),
+        }
+    }
+}
+
+impl<'a> FrameSky<'a> {
+    /// The sky of a frame of this radius, or only its directions where no source shines.
+    pub(in crate::render) fn at_radius(
+        radius: &'a SkyAtRadius,
+        scene: &Scene,
+        view: &'a View,
+        source: Option<&'a SkySource>,
+    ) -> Self {
+        match source {
+            Some(source) => Self::new(view, &radius.curve, scene, (source, &radius.colours)),
+            None => Self::dark(view, &radius.curve, scene),
+        }
+    }
+}

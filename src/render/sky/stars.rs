@@ -1,0 +1,330 @@
+//! The images of stars in a frame.
+//!
+//! # Roots
+//! A star is seen wherever a ray leaves towards it. With θ its angle from p̂ these are the rays in the plane of p̂ and the
+//! star that sweep `θ, 2π − θ, 2π + θ, 4π − θ, …`, alternately on its side of the hole and on the other one: one image
+//! for each order, since the swept angle falls strictly with the angle from the hole's direction.
+//!
+//! # Light
+//! An image is magnified by `|sin ψ dψ/(sin Φ dΦ)|` in solid angle, and its irradiance with it, since lensing keeps
+//! radiance. Straight before and behind the hole that would be infinite. There a star of angular radius ρ is seen as a
+//! ring of the area `2π sin ψ ρ/|dΦ/dψ|` for each order, so that the magnification is at most `2 sin ψ/(ρ |dΦ/dψ|)`.
+//!
+//! An image falls on the square of one pixel, centred on its place, and each pixel gets its share of the irradiance over
+//! its own solid angle. So the sum over pixels does not depend on where between them the image falls.
+
+use core::f64::consts::{PI, TAU};
+
+use rayon::prelude::*;
+
+use super::shader::SkyShader;
+use crate::isoradial::{EscapeCurve, Image};
+use crate::render::frame::Threads;
+use crate::scene::View;
+use crate::sky::{Star, StarColours, StarField};
+
+/// Images whose pixels would be fainter than this are left out, and all higher orders with them: it is half of the first
+/// code of 16 bits.
+const FAINTEST: f64 = 5e-7;
+
+/// Nearer than this to straight before the hole, in radians, the magnification is that on the axis.
+const AXIS: f64 = 1e-7;
+
+/// More orders than the faintest image leaves of the brightest star: each is about e^{2π} times fainter than the one
+/// before last.
+const MOST_ORDERS: usize = 24;
+
+/// Stars of a task.
+const CHUNK: usize = 2048;
+
+/// The image of a star.
+#[derive(Debug, Clone, Copy)]
+struct Splat {
+    /// The pixel to the upper left of its place.
+    column: i32,
+    row: i32,
+    /// How far it is from there to the next pixel, to the right and down.
+    right: f32,
+    down: f32,
+    /// Irradiance over the solid angle of a pixel in the picture's centre.
+    light: [f32; 3],
+}
+
+/// The images of stars, sorted into bands of rows. The memory is reused.
+#[derive(Debug, Default)]
+pub(in crate::render) struct StarImages {
+    chunks: Vec<Vec<Splat>>,
+    sorted: Vec<Splat>,
+    /// Where each band's images begin, and where the last band's end.
+    firsts: Vec<usize>,
+}
+
+/// What stars are seen by.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::render) struct StarView<'a> {
+    pub(in crate::render) shader: SkyShader<'a>,
+    pub(in crate::render) colours: &'a StarColours,
+    /// The angular radius of stars, in radians.
+    pub(in crate::render) radius: f64,
+}
+
+impl StarImages {
+    /// Finds the images of stars, for bands of `rows` rows.
+    pub(in crate::render) fn find(
+        &mut self,
+        field: &StarField,
+        seen: &StarView<'_>,
+        rows: usize,
+        threads: Threads,
+    ) {
+        let stars = field.stars.chunks(CHUNK);
+        self.chunks.resize_with(stars.len(), Vec::new);
+        let projection = Projection::new(seen.shader.view, seen.shader.curve);
+        let find = |stars: &[Star], splats: &mut Vec<Splat>| {
+            splats.clear();
+            for star in stars {
+                seen.images(star, &projection, splats);
+            }
+        };
+        if threads == Threads::All {
+            let chunks = field.stars.par_chunks(CHUNK).zip(&mut self.chunks);
+            chunks.for_each(|(stars, splats)| find(stars, splats));
+        } else {
+            let chunks = stars.zip(&mut self.chunks);
+            chunks.for_each(|(stars, splats)| find(stars, splats));
+        }
+        self.sort(seen.shader.view.height() as usize, rows);
+    }
+
+    /// Sorts the images into bands. In each they stay in the order of the stars.
+    fn sort(&mut self, height: usize, rows: usize) {
+        let bands = height.div_ceil(rows);
+        // An image falls on two rows, which may be in two bands.
+        let bands_of = |splat: &Splat| {
+            let last = (splat.row + 1).clamp(0, height as i32 - 1) as usize;
+            splat.row.max(0) as usize / rows..=last / rows
+        };
+        self.firsts.clear();
+        self.firsts.resize(bands + 1, 0);
+        for band in self.chunks.iter().flatten().flat_map(bands_of) {
+            self.firsts[band] += 1;
+        }
+        let mut end = 0;
+        for first in &mut self.firsts {
+            end += *first;
+            *first = end;
+        }
+        self.sorted.clear();
+        self.sorted.resize(end, Splat::NONE);
+        for chunk in self.chunks.iter().rev() {
+            for splat in chunk.iter().rev() {
+                for band in bands_of(splat) {
+                    self.firsts[band] -= 1;
+                    self.sorted[self.firsts[band]] = *splat;
+                }
+            }
+        }
+    }
+
+    /// Adds the images of a band to its light. The band begins at row `top`.
+    pub(in crate::render) fn add(
+        &self,
+        view: &View,
+        (band, top, rows): (usize, usize, usize),
+        light: &mut [[f32; 3]],
+    ) {
+        let width = view.width() as usize;
+        for splat in &self.sorted[self.firsts[band]..self.firsts[band + 1]] {
+            for (row, down) in [(splat.row, 1.0 - splat.down), (splat.row + 1, splat.down)] {
+                let row_of_band = i64::from(row) - top as i64;
+                if row_of_band < 0 || row_of_band >= rows as i64 {
+                    continue;
+                }
+                for (column, right) in [
+                    (splat.column, 1.0 - splat.right),
+                    (splat.column + 1, splat.right),
+                ] {
+                    if column < 0 || column >= width as i32 {
+                        continue;
+                    }
+                    let share = right * down * over_solid_angle(view, column, row);
+                    let pixel = &mut light[row_of_band as usize * width + column as usize];
+                    for (pixel, c) in pixel.iter_mut().zip(splat.light) {
+                        *pixel += share * c;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Returns the solid angle of a pixel in the picture's centre over that of a pixel, `(1 + X² + Y²)^{3/2}`.
+fn over_solid_angle(view: &View, column: i32, row: i32) -> f32 {
+    let (x, y) = (
+        view.x_at(f64::from(column) + 0.5),
+        view.y_at(f64::from(row) + 0.5),
+    );
+    let square = 1.0 + x * x + y * y;
+    (square * square.sqrt()) as f32
+}
+
+impl Splat {
+    const NONE: Self = Self {
+        column: 0,
+        row: 0,
+        right: 0.0,
+        down: 0.0,
+        light: [0.0; 3],
+    };
+}
+
+impl StarView<'_> {
+    /// Finds the images of a star.
+    fn images(&self, star: &Star, projection: &Projection, splats: &mut Vec<Splat>) {
+        let [p, a, b] = self.shader.axes();
+        let direction = star.direction;
+        let (along, across) = (direction.dot(p), (direction.dot(a), direction.dot(b)));
+        let sine = (across.0 * across.0 + across.1 * across.1).sqrt();
+        let first = if projection.shows_first(along) {
+            0
+        } else {
+            1
+        };
+        if first > projection.last {
+            return;
+        }
+        let theta = libm::atan2(sine, along);
+        // A star on the axis is seen all around; one place stands for all.
+        let side = if sine > 0.0 {
+            (across.0 / sine, across.1 / sine)
+        } else {
+            (1.0, 0.0)
+        };
+        let light = self.colours.light(star);
+        let brightest = light.iter().fold(0.0_f32, |most, c| most.max(c.abs()));
+        let brightest = f64::from(brightest) / projection.solid_angle;
+        let spread = sine.max(0.5 * self.radius);
+        for (order, most) in (0..=projection.last).zip(&projection.most).skip(first) {
+            if brightest * most < FAINTEST * spread {
+                return;
+            }
+            let turns = TAU * (order / 2) as f64;
+            let (angle, side) = if order % 2 == 0 {
+                (turns + theta, side)
+            } else {
+                (turns + TAU - theta, (-side.0, -side.1))
+            };
+            let image = self.shader.curve.image(angle);
+            let Some((column, row)) = projection.place(&image, side) else {
+                continue;
+            };
+            let magnification = if angle < AXIS {
+                1.0 / (image.rate * image.rate)
+            } else {
+                image.magnification(spread)
+            };
+            if brightest * magnification < FAINTEST {
+                continue;
+            }
+            let scale = (magnification / projection.solid_angle) as f32;
+            let (left, above) = ((column - 0.5).floor(), (row - 0.5).floor());
+            splats.push(Splat {
+                column: left as i32,
+                row: above as i32,
+                right: (column - 0.5 - left) as f32,
+                down: (row - 0.5 - above) as f32,
+                light: light.map(|c| c * scale),
+            });
+        }
+    }
+}
+
+/// From directions to places in the picture.
+struct Projection {
+    /// The camera's directions ahead, right and up, in the basis (towards the hole, â, b̂).
+    ahead: [f64; 3],
+    right: [f64; 3],
+    up: [f64; 3],
+    per_pixel: f64,
+    size: (f64, f64),
+    /// Of a pixel in the picture's centre.
+    solid_angle: f64,
+    /// For each order, a bound of `sin ψ |dψ/dΦ|`: that of its first angle, since both factors fall with the angle.
+    most: [f64; MOST_ORDERS],
+    /// The cosines of the angles that rays of the picture sweep within half a turn, the least and the greatest.
+    cosines: (f64, f64),
+    /// The last order that the picture may show.
+    last: usize,
+}
+
+impl Projection {
+    fn new(view: &View, curve: &EscapeCurve) -> Self {
+        // Stars half a pixel beyond the picture still shine into it.
+        let (least, greatest) = hole_angles(view, 1.0);
+        let swept = |psi: f64| {
+            let escape = curve.at(libm::cos(psi), libm::sin(psi));
+            escape.map_or(f64::INFINITY, |escape| escape.angle)
+        };
+        let (most_swept, least_swept) = (swept(least), swept(greatest));
+        let last = (most_swept / PI).min(MOST_ORDERS as f64 - 1.0) as usize;
+        let cosines = (
+            libm::cos(most_swept.min(PI)) - 1e-9,
+            libm::cos(least_swept.min(PI)) + 1e-9,
+        );
+        let most = core::array::from_fn(|order| match order {
+            0 => f64::INFINITY,
+            _ => {
+                let image = curve.image(PI * order as f64);
+                image.sine / image.rate
+            }
+        });
+        let (z, ta, tb) = (view.z(), view.ta(), view.tb());
+        let side = view.pixel_side();
+        Self {
+            ahead: [z.at_centre, ta.at_centre, tb.at_centre],
+            right: [z.per_x, ta.per_x, tb.per_x],
+            up: [z.per_y, ta.per_y, tb.per_y],
+            per_pixel: 1.0 / side,
+            size: (f64::from(view.width()), f64::from(view.height())),
+            solid_angle: side * side,
+            most,
+            cosines,
+            last,
+        }
+    }
+
+    /// Returns whether the picture may show the first image of a star whose angle from p̂ has this cosine.
+    #[inline]
+    fn shows_first(&self, cosine: f64) -> bool {
+        cosine >= self.cosines.0 && cosine <= self.cosines.1
+    }
+
+    /// Returns where an image on a side of the hole is seen, in pixels from the picture's left and top; `None` where
+    /// none of its light falls into the picture.
+    #[inline]
+    fn place(&self, image: &Image, side: (f64, f64)) -> Option<(f64, f64)> {
+        let direction = [image.cosine, image.sine * side.0, image.sine * side.1];
+        let along = |axis: &[f64; 3]| {
+            axis[0] * direction[0] + axis[1] * direction[1] + axis[2] * direction[2]
+        };
+        let ahead = along(&self.ahead);
+        if ahead <= 0.0 {
+            return None;
+        }
+        let scale = self.per_pixel / ahead;
+        let column = 0.5 * self.size.0 + along(&self.right) * scale;
+        let row = 0.5 * self.size.1 - along(&self.up) * scale;
+        let is_within = |place: f64, size: f64| place > -0.5 && place < size + 0.5;
+        (is_within(column, self.size.0) && is_within(row, self.size.1)).then_some((column, row))
+    }
+}
+
+/// Returns bounds of the angles between the hole's direction and the rays of a picture that is wider by `margin` pixels
+/// on each side.
+fn hole_angles(view: &View, margin: f64) -> (f64, f64) {
+    let centre = view.ray_at(0.0, 0.0);
+    let axis = libm::atan2(centre.transverse(), centre.z);
+    let (x, y) = (view.x_at(-margin), view.y_at(-margin));
+    let corner = libm::atan((x * x + y * y).sqrt());
+    ((axis - corner).max(0.0), (axis + corner).min(PI))
+}
