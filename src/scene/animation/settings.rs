@@ -3,6 +3,8 @@
 use super::Animation;
 use crate::scene::error::SceneError;
 use crate::scene::layers::LayerSet;
+use crate::scene::sky::Sky;
+use crate::scene::validate;
 use crate::scene::values::{ImageSize, Light, Tone};
 
 impl Animation {
@@ -13,7 +15,12 @@ impl Animation {
 
     /// The light of the disk; `None` where the disk only covers.
     pub fn light(&self) -> Option<Light> {
-        self.file.disk.light
+        self.file.light()
+    }
+
+    /// The sky; `None` where it is black and pictures show only the disk.
+    pub fn sky(&self) -> Option<&Sky> {
+        self.file.sky.as_deref()
     }
 
     /// The bits of a PNG picture's samples, 8 or 16.
@@ -56,10 +63,13 @@ impl Animation {
     /// The same animation with a shining disk, or with one that only covers (`None`).
     ///
     /// # Errors
-    /// [`SceneError::Value`] for a temperature that is not allowed, and for a disk that no longer has the light of one
-    /// of the layers.
+    /// [`SceneError::Value`] for a temperature that is not allowed, for the light of a scene without a disk, and for a
+    /// disk that no longer has the light of one of the layers.
     pub fn with_light(mut self, light: Option<Light>) -> Result<Self, SceneError> {
-        self.file.disk.light = light;
+        match &mut self.file.disk {
+            Some(disk) => disk.light = light,
+            None => validate::light(light, false)?,
+        }
         self.with_settings()
     }
 

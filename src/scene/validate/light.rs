@@ -13,11 +13,15 @@ pub const MAX_TEMPERATURE: f64 = 1e9;
 /// The largest exposure, in stops; the smallest is its negative.
 pub const MAX_EXPOSURE: f64 = 100.0;
 
-/// Checks a disk's light: a temperature from [`MIN_TEMPERATURE`] to [`MAX_TEMPERATURE`].
+/// Checks the light of a scene with or without a disk: a temperature from [`MIN_TEMPERATURE`] to [`MAX_TEMPERATURE`].
 ///
 /// # Errors
 /// [`SceneError::Value`]
-pub(in crate::scene) fn light(light: Option<Light>) -> Result<(), SceneError> {
+pub(in crate::scene) fn light(light: Option<Light>, has_disk: bool) -> Result<(), SceneError> {
+    if let Some(light) = light {
+        let reason = "there is no disk that could shine; add the table [disk] or remove this light";
+        SceneError::check(has_disk, "disk.light", light, reason)?;
+    }
     let Some(Light::BlackBody { temperature }) = light else {
         return Ok(());
     };
