@@ -60,7 +60,7 @@ impl Quantity {
             Layer::Redshift => Some(Self::Redshift),
             Layer::EmissionCosine => Some(Self::EmissionCosine),
             Layer::Temperature | Layer::Colour => Some(Self::Amplitude),
-            Layer::Coverage | Layer::Order | Layer::Alpha => None,
+            Layer::Coverage | Layer::Order | Layer::Sky | Layer::SkyUv | Layer::Alpha => None,
         }
     }
 
@@ -331,6 +331,7 @@ impl Ink<NODES> for Data<'_> {
                         }
                     }
                     Layer::Order => pixels.fill(order as f32),
+                    Layer::Sky | Layer::SkyUv => pixels.fill(f32::NAN),
                     _ => pixels.fill(1.0),
                 }
                 continue;

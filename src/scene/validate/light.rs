@@ -239,7 +239,11 @@ mod tests {
         refused(
             BLACK_BODY,
             "layers = [\"alpha\"]",
-            &["line", "\"alpha\"", "emission_cosine, temperature, colour"],
+            &[
+                "line",
+                "\"alpha\"",
+                "emission_cosine, temperature, colour, sky, sky_uv",
+            ],
         );
         refused(
             BLACK_BODY,
