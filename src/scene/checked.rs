@@ -134,7 +134,7 @@ impl Scene {
     /// disk that no longer has the light of one of the scene's layers.
     pub fn with_light(mut self, light: Option<Light>) -> Result<Self, SceneError> {
         validate::light(light, self.disk.is_some())?;
-        validate::layers(self.settings.layers, light)?;
+        validate::layers(self.settings.layers, light, self.sky.is_some())?;
         self.light = light;
         Ok(self)
     }
@@ -142,14 +142,15 @@ impl Scene {
     /// The same scene with another sky, or without one (`None`).
     ///
     /// # Errors
-    /// [`SceneError::Value`] for a value of the sky that is not allowed, [`SceneError::Empty`] for a scene without a
-    /// disk that would no longer have a sky.
+    /// [`SceneError::Value`] for a value of the sky that is not allowed, and for the layer of colour in a scene that
+    /// would no longer show any; [`SceneError::Empty`] for a scene that would have neither disk nor sky.
     pub fn with_sky(mut self, sky: Option<Sky>) -> Result<Self, SceneError> {
         match &sky {
             Some(sky) => validate::sky(sky)?,
             None if self.disk.is_none() => return Err(SceneError::Empty),
             None => {}
         }
+        validate::layers(self.settings.layers, self.light, sky.is_some())?;
         self.sky = sky.map(Arc::new);
         Ok(self)
     }
@@ -183,9 +184,9 @@ impl Scene {
     /// The same scene with these layers of data.
     ///
     /// # Errors
-    /// [`SceneError::Value`] for a layer that the disk's light does not have.
+    /// [`SceneError::Value`] for a layer that the scene's light does not have.
     pub fn with_layers(mut self, layers: LayerSet) -> Result<Self, SceneError> {
-        validate::layers(layers, self.light)?;
+        validate::layers(layers, self.light, self.sky.is_some())?;
         self.settings.layers = layers;
         Ok(self)
     }
@@ -211,7 +212,7 @@ impl Scene {
         self.light
     }
 
-    /// The sky; `None` where it is black and pictures show only the disk.
+    /// The sky; `None` where it is black. Before a sky a disk without light shines with the radiance 1, white.
     pub fn sky(&self) -> Option<&Sky> {
         self.sky.as_deref()
     }
@@ -219,6 +220,11 @@ impl Scene {
     /// The sky, as the frames of an animation share it.
     pub(super) fn shared_sky(&self) -> Option<&Arc<Sky>> {
         self.sky.as_ref()
+    }
+
+    /// Whether pictures are in colour: the disk has light, or there is a sky. Else they are masks.
+    pub fn shows_colour(&self) -> bool {
+        self.light.is_some() || self.sky.is_some()
     }
 
     /// The exposure, in stops: a picture shows light times 2 to this power.

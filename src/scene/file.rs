@@ -266,7 +266,7 @@ impl SceneFile {
         let settings =
             validate::image(image.width, image.height, image.antialias, image.tolerance)?;
         validate::exposure("image.exposure", image.exposure)?;
-        validate::layers(image.layers, light)?;
+        validate::layers(image.layers, light, self.sky.is_some())?;
         Ok(ImageSettings {
             exposure: image.exposure,
             tone: image.tone,

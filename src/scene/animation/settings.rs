@@ -1,4 +1,4 @@
-//! What all frames of an animation have in common: size, edges, light and how it is shown.
+//! What all frames of an animation have in common: size, edges, light, sky and how they are shown.
 
 use super::Animation;
 use crate::scene::error::SceneError;
@@ -18,9 +18,14 @@ impl Animation {
         self.file.light()
     }
 
-    /// The sky; `None` where it is black and pictures show only the disk.
+    /// The sky of all frames; `None` where it is black.
     pub fn sky(&self) -> Option<&Sky> {
         self.file.sky.as_deref()
+    }
+
+    /// Whether frames are in colour: the disk has light, or there is a sky. Else they are masks.
+    pub fn shows_colour(&self) -> bool {
+        self.light().is_some() || self.sky().is_some()
     }
 
     /// The bits of a PNG picture's samples, 8 or 16.
@@ -102,7 +107,7 @@ impl Animation {
     /// The same animation with these layers of data.
     ///
     /// # Errors
-    /// [`SceneError::Value`] for a layer that the disk's light does not have.
+    /// [`SceneError::Value`] for a layer that the scene's light does not have.
     pub fn with_layers(mut self, layers: LayerSet) -> Result<Self, SceneError> {
         self.file.image.layers = layers;
         self.with_settings()

@@ -58,11 +58,15 @@ pub(in crate::scene) fn bits(bits: i64) -> Result<u8, SceneError> {
     Ok(bits as u8)
 }
 
-/// Checks that a disk with this light has all of `layers`.
+/// Checks that a scene with this light, with a sky or without, has all of `layers`.
 ///
 /// # Errors
 /// [`SceneError::Value`]
-pub(in crate::scene) fn layers(layers: LayerSet, light: Option<Light>) -> Result<(), SceneError> {
+pub(in crate::scene) fn layers(
+    layers: LayerSet,
+    light: Option<Light>,
+    has_sky: bool,
+) -> Result<(), SceneError> {
     let check = |is_allowed, reason| {
         SceneError::check(is_allowed, "image.layers", format_args!("{layers}"), reason)
     };
@@ -71,8 +75,8 @@ pub(in crate::scene) fn layers(layers: LayerSet, light: Option<Light>) -> Result
         "alpha is no layer of its own; files hold it beside colour",
     )?;
     check(
-        !layers.has(Layer::Colour) || light.is_some(),
-        "a disk without light has no colour; add the table [disk.light] or remove this layer",
+        !layers.has(Layer::Colour) || light.is_some() || has_sky,
+        "a disk without light has no colour; add the table [disk.light] or [sky], or remove this layer",
     )?;
     check(
         !layers.has(Layer::Temperature) || matches!(light, Some(Light::BlackBody { .. })),
