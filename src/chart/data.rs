@@ -7,7 +7,7 @@ use super::methods::Tables;
 use super::rays::RayPanel;
 use super::scene::ScenePanel;
 use super::verdict::verdict;
-use crate::scene::Scene;
+use crate::scene::{LayerSet, Scene};
 
 /// The measurements of all panels.
 #[derive(Debug)]
@@ -23,16 +23,23 @@ pub struct ChartData {
 }
 
 impl ChartData {
-    /// Measures all panels. The last two show `scene`, which the figure calls `name`.
+    /// Measures all panels. The last two show `scene` before a black sky. The figure calls it `name`.
     ///
     /// # Errors
-    /// [`ChartError`] if a table, a thread or a frame cannot be made.
+    /// [`ChartError`] if the scene has no disk, or if a table, a thread or a frame cannot be made.
     pub fn measure(
         scene: &Scene,
         name: String,
         effort: ChartEffort,
         progress: &ChartProgress<'_>,
     ) -> Result<Self, ChartError> {
+        if scene.disk().is_none() {
+            return Err(ChartError::NoDisk);
+        }
+        let scene = &scene
+            .clone()
+            .with_layers(LayerSet::default())?
+            .with_sky(None)?;
         progress("generating tables", 0.0);
         let tables = Tables::new(effort)?;
         let rays = RayPanel::measure(&tables, effort, &|share| {

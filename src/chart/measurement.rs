@@ -31,6 +31,11 @@ pub enum ChartError {
     /// A frame could not be rendered.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// The scene has no disk.
+    #[error(
+        "the chart measures frames of a disk, and the scene has none; choose a scene with the table [disk]"
+    )]
+    NoDisk,
     /// The scene has no form that can be measured.
     #[error(transparent)]
     Scene(#[from] SceneError),

@@ -2,7 +2,7 @@
 
 use super::coarse::{CoarsePoints, coarse_points};
 use super::curve_spec::CurveSpec;
-use super::edge::{Edge, EdgeError};
+use super::edge::EdgeError;
 use super::node_angles::NodeAngles;
 use super::nodes::CurveNodes;
 use super::pixel_metric::PixelMetric;
@@ -33,9 +33,10 @@ struct VisibleTurn {
     before: Option<[CoarsePoints; 2]>,
 }
 
-/// Creates a builder for the curves of `spec`.
+/// Creates a builder for the curves of `spec` and of a disk with the inverse radii `u_edges`, the inner edge's first.
 pub(super) fn curve_builder<'a, A: SweptAngles>(
     spec: &CurveSpec,
+    u_edges: [f64; 2],
     metric: &'a PixelMetric,
     angles: &'a A,
 ) -> CurveBuilder<'a, impl FixedRadiiAngles> {
@@ -43,7 +44,7 @@ pub(super) fn curve_builder<'a, A: SweptAngles>(
     CurveBuilder {
         metric,
         angle_error: angles.error(),
-        solvers: [Edge::Inner, Edge::Outer].map(|edge| curve_solver(spec, edge, angles)),
+        solvers: u_edges.map(|u_disk| curve_solver(spec, u_disk, angles)),
         turns: turns
             .filter_map(|(index, x)| {
                 Some(VisibleTurn {

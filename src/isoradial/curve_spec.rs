@@ -1,4 +1,4 @@
-//! What curves are built for: one camera radius, one disk, the part of the sky in the picture, and its pixels.
+//! What curves are built for: one camera radius, at most one disk, the part of the sky in the picture, and its pixels.
 //!
 //! # Pixels
 //! Let p be the height of a pixel in the plane at distance 1 from the camera. At the angle θ from the picture's centre,
@@ -12,17 +12,15 @@ use super::ray_bounds::RayBounds;
 use crate::orbit::invariants::{critical_slope, three_u_minus_two};
 use crate::scene::{Scene, View};
 
-/// What curves are built for: one camera radius, one disk, and one picture or several from that radius.
+/// What curves are built for: one camera radius, at most one disk, and one picture or several from that radius.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurveSpec {
     /// The camera's inverse radius.
     pub u0: f64,
     /// `u0 √(1 − u0)`, the ratio of du/dφ to κ.
     pub slope_scale: f64,
-    /// The inverse radius of the disk's inner edge.
-    pub u_inner: f64,
-    /// The inverse radius of the disk's outer edge.
-    pub u_outer: f64,
+    /// The inverse radii of the disk's inner and outer edge, in this order. Without a disk there are no curves.
+    pub u_edges: Option<[f64; 2]>,
     /// The height of a pixel in the plane at distance 1.
     pub pixel: f64,
     /// The angle between the picture's centre and the hole's direction, in radians.
@@ -51,20 +49,19 @@ impl CurveSpec {
             ..Self::all_round(
                 view.u0(),
                 view.slope_scale(),
-                (scene.disk().inner, scene.disk().outer),
+                scene.disk().map(|disk| (disk.inner, disk.outer)),
             )
         }
     }
 
     /// Describes the curves for all rays of a camera at inverse radius `u0`, where `slope_scale` is `u0 √(1 − u0)`.
     ///
-    /// A pixel is one radian and the tolerance one pixel. Set [`Self::pixel`] and [`Self::tolerance`] for others.
-    pub fn all_round(u0: f64, slope_scale: f64, (inner, outer): (f64, f64)) -> Self {
+    /// `radii` are those of the disk's inner and outer edge. A pixel is one radian and the tolerance one pixel. Set [`Self::pixel`] and [`Self::tolerance`] for others.
+    pub fn all_round(u0: f64, slope_scale: f64, radii: Option<(f64, f64)>) -> Self {
         Self {
             u0,
             slope_scale,
-            u_inner: 1.0 / inner,
-            u_outer: 1.0 / outer,
+            u_edges: radii.map(|(inner, outer)| [1.0 / inner, 1.0 / outer]),
             pixel: 1.0,
             axis: 0.0,
             corner: 0.0,
@@ -75,7 +72,7 @@ impl CurveSpec {
 
     /// Describes curves that serve the pictures of both. Returns `None` if the camera radii or the disks differ.
     pub fn union(&self, other: &Self) -> Option<Self> {
-        let radii = |spec: &Self| (spec.u0, spec.slope_scale, spec.u_inner, spec.u_outer);
+        let radii = |spec: &Self| (spec.u0, spec.slope_scale, spec.u_edges);
         (radii(self) == radii(other)).then(|| Self {
             pixel: self.pixel.min(other.pixel),
             axis: self.axis.max(other.axis),

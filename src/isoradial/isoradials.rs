@@ -62,7 +62,7 @@ impl ImageOrder {
 
 impl Isoradials {
     /// Builds the curves of `spec` from a method's swept angles. The [module's page](super) derives how many orders and
-    /// nodes they have.
+    /// nodes they have. Without a disk there are none.
     pub fn new(spec: &CurveSpec, angles: &impl SweptAngles) -> Self {
         let mut curves = Self {
             spec: *spec,
@@ -73,13 +73,16 @@ impl Isoradials {
             left_out: None,
             error: EdgeError::default(),
         };
+        let Some(u_edges) = spec.u_edges else {
+            return curves;
+        };
         let allowed = 0.5 * spec.tolerance;
         let metric = PixelMetric::new(spec);
         let tolerance = SolveTolerance {
             psi: NODE_SHARE * allowed / metric.max_per_radian(),
             phi: 0.0,
         };
-        let mut builder = curve_builder(spec, &metric, angles);
+        let mut builder = curve_builder(spec, u_edges, &metric, angles);
         for number in 0..MAX_ORDERS {
             let coarse = builder.coarse(number, tolerance);
             let thickness = coarse.thickness(&metric);
@@ -115,9 +118,10 @@ impl Isoradials {
         self.spec.union(spec) == Some(self.spec)
     }
 
-    /// Returns the inverse radii of the outer and the inner edge.
+    /// Returns the inverse radii of the outer and the inner edge, 0 without a disk.
     pub(crate) fn u_edges(&self) -> (f64, f64) {
-        (self.spec.u_outer, self.spec.u_inner)
+        let [inner, outer] = self.spec.u_edges.unwrap_or_default();
+        (outer, inner)
     }
 
     /// Returns what they were built for.

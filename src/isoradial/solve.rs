@@ -62,16 +62,12 @@ pub(super) struct SolveTolerance {
     pub(super) phi: f64,
 }
 
-/// Creates the solver for an edge of the disk, seen by the camera of `spec`.
+/// Creates the solver for an edge of the disk at inverse radius `u_disk`, seen by the camera of `spec`.
 pub(super) fn curve_solver<A: SweptAngles>(
     spec: &CurveSpec,
-    edge: Edge,
+    u_disk: f64,
     angles: &A,
 ) -> CurveSolver<impl FixedRadiiAngles> {
-    let u_disk = match edge {
-        Edge::Inner => spec.u_inner,
-        Edge::Outer => spec.u_outer,
-    };
     CurveSolver {
         u0: spec.u0,
         slope_scale: spec.slope_scale,
@@ -84,9 +80,16 @@ pub(super) fn curve_solver<A: SweptAngles>(
 }
 
 /// Returns `κ − κ_c` of the ray that reaches an edge in a given angle, as right as the method's angles are. `angle` is
-/// above 0; it is the `φ₁ + kπ` of [`Isoradials::height`](super::Isoradials::height).
+/// above 0; it is the `φ₁ + kπ` of [`Isoradials::height`](super::Isoradials::height). Returns NaN without a disk.
 pub fn height_at(spec: &CurveSpec, edge: Edge, angle: f64, angles: &impl SweptAngles) -> f64 {
-    let solver = curve_solver(spec, edge, angles);
+    let Some([u_inner, u_outer]) = spec.u_edges else {
+        return f64::NAN;
+    };
+    let u_disk = match edge {
+        Edge::Inner => u_inner,
+        Edge::Outer => u_outer,
+    };
+    let solver = curve_solver(spec, u_disk, angles);
     solver.bracket(angle, solver.first_guess(angle), 1e-13).0
 }
 

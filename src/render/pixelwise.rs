@@ -229,7 +229,10 @@ pub fn sees(
     orbits: &impl Orbits,
     (i, j): (u32, u32),
 ) -> Result<bool, OrbitError> {
-    Ok(disk_crossing(scene.disk(), view, orbits, view.pixel(i, j))?.is_some())
+    Ok(match scene.disk() {
+        Some(disk) => disk_crossing(disk, view, orbits, view.pixel(i, j))?.is_some(),
+        None => false,
+    })
 }
 
 /// Returns what the centre of a pixel (column, row) sees of the disk: its ring, azimuth and redshift where the ray
@@ -256,7 +259,9 @@ pub fn sight_along(
     orbits: &impl Orbits,
     pixel: PixelRay,
 ) -> Result<Option<Sight>, OrbitError> {
-    let disk = scene.disk();
+    let Some(disk) = scene.disk() else {
+        return Ok(None);
+    };
     let Some(DiskCrossing { ray, order, angle }) = disk_crossing(disk, view, orbits, pixel)? else {
         return Ok(None);
     };
@@ -298,8 +303,9 @@ fn meeting_in_steps(
     method: &FixedStep,
     pixel: PixelRay,
 ) -> Option<(u32, f64)> {
+    let disk = scene.disk()?;
+    let (u_inner, u_outer) = (1.0 / disk.inner, 1.0 / disk.outer);
     let s = pixel.transverse();
-    let (u_inner, u_outer) = (1.0 / scene.disk().inner, 1.0 / scene.disk().outer);
     let ray = Ray::new(view.u0(), view.dudphi(pixel)).ok()?;
     if s <= 0.0 {
         return None;

@@ -44,14 +44,17 @@ pub enum Form {
 }
 
 impl Form {
-    /// Whether it shows more than where the disk is.
+    /// Whether it shows more of the disk than where it is.
     pub fn needs_map(self) -> bool {
         match self {
             Self::Grey8 | Self::Grey16 => false,
             Self::Rgb8 | Self::Rgb16 => true,
-            Self::Layers(layers) => layers
-                .iter()
-                .any(|layer| !matches!(layer, Layer::Coverage | Layer::Order | Layer::Sky | Layer::SkyUv | Layer::Alpha)),
+            Self::Layers(layers) => layers.iter().any(|layer| {
+                !matches!(
+                    layer,
+                    Layer::Coverage | Layer::Order | Layer::Sky | Layer::SkyUv | Layer::Alpha
+                )
+            }),
         }
     }
 

@@ -32,7 +32,7 @@ use super::vector::norm;
 pub struct Scene {
     camera: Camera,
     radius: f64,
-    disk: Disk,
+    disk: Option<Disk>,
     light: Option<Light>,
     sky: Option<Arc<Sky>>,
     settings: ImageSettings,
@@ -47,7 +47,26 @@ impl Scene {
     pub fn new(camera: Camera, disk: Disk, image: ImageSize) -> Result<Self, SceneError> {
         let (width, height) = (i64::from(image.width), i64::from(image.height));
         let settings = validate::image(width, height, true, DEFAULT_TOLERANCE)?;
-        Self::at_radius(camera, norm(camera.position), disk, None, None, settings)
+        Self::at_radius(
+            camera,
+            norm(camera.position),
+            Some(disk),
+            None,
+            None,
+            settings,
+        )
+    }
+
+    /// Checks a scene that shows only a sky. Its edges are those of [`Self::new`].
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for the first value that is not allowed.
+    pub fn without_disk(camera: Camera, sky: Sky, image: ImageSize) -> Result<Self, SceneError> {
+        validate::sky(&sky)?;
+        let (width, height) = (i64::from(image.width), i64::from(image.height));
+        let settings = validate::image(width, height, true, DEFAULT_TOLERANCE)?;
+        let sky = Some(Arc::new(sky));
+        Self::at_radius(camera, norm(camera.position), None, None, sky, settings)
     }
 
     /// The scene of a camera whose position has the length `radius`, up to the rounding of the position's components.
@@ -57,12 +76,12 @@ impl Scene {
     pub(super) fn at_radius(
         camera: Camera,
         radius: f64,
-        disk: Disk,
+        disk: Option<Disk>,
         light: Option<Light>,
         sky: Option<Arc<Sky>>,
         settings: ImageSettings,
     ) -> Result<Self, SceneError> {
-        validate::scene(&camera, radius, &disk)?;
+        validate::scene(&camera, radius, disk.as_ref())?;
         Ok(Self {
             camera,
             radius,
@@ -71,6 +90,15 @@ impl Scene {
             sky,
             settings,
         })
+    }
+
+    /// The same scene from another camera.
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for a camera that is not allowed.
+    pub fn with_camera(self, camera: Camera) -> Result<Self, SceneError> {
+        let (radius, settings) = (norm(camera.position), self.settings);
+        Self::at_radius(camera, radius, self.disk, self.light, self.sky, settings)
     }
 
     /// The same scene as a picture of another size; the vertical field of view stays.
@@ -102,11 +130,11 @@ impl Scene {
     /// The same scene with a shining disk, or with one that only covers (`None`).
     ///
     /// # Errors
-    /// [`SceneError::Value`] for a temperature that is not allowed, and for a disk that no longer has the light of one
-    /// of the scene's layers.
+    /// [`SceneError::Value`] for a temperature that is not allowed, for the light of a scene without a disk, and for a
+    /// disk that no longer has the light of one of the scene's layers.
     pub fn with_light(mut self, light: Option<Light>) -> Result<Self, SceneError> {
-        validate::light(light)?;
-        validate::layers(self.settings.layers, light)?;
+        validate::light(light, self.disk.is_some())?;
+        validate::layers(self.settings.layers, light, self.sky.is_some())?;
         self.light = light;
         Ok(self)
     }
@@ -114,9 +142,15 @@ impl Scene {
     /// The same scene with another sky, or without one (`None`).
     ///
     /// # Errors
-    /// [`SceneError::Value`] for a value of the sky that is not allowed.
+    /// [`SceneError::Value`] for a value of the sky that is not allowed, and for the layer of colour in a scene that
+    /// would no longer show any; [`SceneError::Empty`] for a scene that would have neither disk nor sky.
     pub fn with_sky(mut self, sky: Option<Sky>) -> Result<Self, SceneError> {
-        sky.as_ref().map_or(Ok(()), validate::sky)?;
+        match &sky {
+            Some(sky) => validate::sky(sky)?,
+            None if self.disk.is_none() => return Err(SceneError::Empty),
+            None => {}
+        }
+        validate::layers(self.settings.layers, self.light, sky.is_some())?;
         self.sky = sky.map(Arc::new);
         Ok(self)
     }
@@ -150,9 +184,9 @@ impl Scene {
     /// The same scene with these layers of data.
     ///
     /// # Errors
-    /// [`SceneError::Value`] for a layer that the disk's light does not have.
+    /// [`SceneError::Value`] for a layer that the scene's light does not have.
     pub fn with_layers(mut self, layers: LayerSet) -> Result<Self, SceneError> {
-        validate::layers(layers, self.light)?;
+        validate::layers(layers, self.light, self.sky.is_some())?;
         self.settings.layers = layers;
         Ok(self)
     }
@@ -168,9 +202,9 @@ impl Scene {
         self.radius
     }
 
-    /// The disk.
-    pub fn disk(&self) -> &Disk {
-        &self.disk
+    /// The disk; `None` where the scene shows only a sky.
+    pub fn disk(&self) -> Option<&Disk> {
+        self.disk.as_ref()
     }
 
     /// The light of the disk; `None` where the disk only covers.
@@ -178,7 +212,7 @@ impl Scene {
         self.light
     }
 
-    /// The sky; `None` where it is black and pictures show only the disk.
+    /// The sky; `None` where it is black. Before a sky a disk without light shines with the radiance 1, white.
     pub fn sky(&self) -> Option<&Sky> {
         self.sky.as_deref()
     }
@@ -186,6 +220,11 @@ impl Scene {
     /// The sky, as the frames of an animation share it.
     pub(super) fn shared_sky(&self) -> Option<&Arc<Sky>> {
         self.sky.as_ref()
+    }
+
+    /// Whether pictures are in colour: the disk has light, or there is a sky. Else they are masks.
+    pub fn shows_colour(&self) -> bool {
+        self.light.is_some() || self.sky.is_some()
     }
 
     /// The exposure, in stops: a picture shows light times 2 to this power.
@@ -252,5 +291,44 @@ mod tests {
             scene.with_size(64, 1_000_001),
             Err(SceneError::Value { .. })
         ));
+    }
+
+    #[test]
+    fn a_scene_without_a_disk_needs_a_sky() {
+        let size = ImageSize {
+            width: 64,
+            height: 36,
+        };
+        let camera = Camera::at([15.0, 0.0, 1.0], 60.0);
+        let black = Scene::without_disk(camera, Sky::default(), size).unwrap();
+        assert_eq!(black.disk(), None);
+        assert_eq!(black.sky(), Some(&Sky::default()));
+        let toml = black.to_toml();
+        assert!(toml.contains("\n\n[sky]\n\n[image]") && !toml.contains("[disk]"));
+        assert_eq!(Scene::from_toml(&toml).unwrap(), black);
+
+        let words = "add the table [disk] or the table [sky]";
+        for error in [
+            Scene::from_toml(&toml.replace("[sky]\n", "")).unwrap_err(),
+            black.clone().with_sky(None).unwrap_err(),
+        ] {
+            assert!(error.to_string().contains(words), "{error}");
+        }
+        let error = black
+            .clone()
+            .with_light(Some(Light::Bolometric))
+            .unwrap_err();
+        assert!(
+            error.to_string().contains("add the table [disk]"),
+            "{error}"
+        );
+        let classic = Scene::builtin("classic").unwrap();
+        let other = classic.clone().with_camera(camera).unwrap();
+        assert_eq!((other.camera(), other.disk()), (&camera, classic.disk()));
+        assert!(
+            classic
+                .with_camera(Camera::at([5.0, 0.0, 0.0], 60.0))
+                .is_err()
+        );
     }
 }

@@ -14,6 +14,9 @@ pub enum SceneError {
         /// What is wrong; from the parser, with line and column.
         message: String,
     },
+    /// There is nothing to show.
+    #[error("the scene has neither a disk nor a sky; add the table [disk] or the table [sky]")]
+    Empty,
     /// A value is not allowed.
     #[error("{key} = {value}: {reason}")]
     Value {

@@ -21,7 +21,7 @@ mod write;
 #[serde(deny_unknown_fields)]
 pub(super) struct SceneFile {
     pub(super) camera: CameraTable,
-    pub(super) disk: DiskTable,
+    pub(super) disk: Option<DiskTable>,
     #[serde(default, deserialize_with = "sky::sky")]
     pub(super) sky: Option<Arc<Sky>>,
     pub(super) image: ImageTable,
@@ -250,18 +250,23 @@ impl SceneFile {
             .map_err(|error| SceneError::toml(readable(error.to_string().trim_end())))
     }
 
+    /// The light of the disk, if there is any.
+    pub(super) fn light(&self) -> Option<Light> {
+        self.disk.as_ref().and_then(|disk| disk.light)
+    }
+
     /// Checks the light, the sky and the settings of the pictures.
     ///
     /// # Errors
     /// [`SceneError::Value`] for the first value that is not allowed.
     pub(super) fn settings(&self) -> Result<ImageSettings, SceneError> {
-        let (image, light) = (&self.image, self.disk.light);
-        validate::light(light)?;
+        let (image, light) = (&self.image, self.light());
+        validate::light(light, self.disk.is_some())?;
         self.sky.as_deref().map_or(Ok(()), validate::sky)?;
         let settings =
             validate::image(image.width, image.height, image.antialias, image.tolerance)?;
         validate::exposure("image.exposure", image.exposure)?;
-        validate::layers(image.layers, light)?;
+        validate::layers(image.layers, light, self.sky.is_some())?;
         Ok(ImageSettings {
             exposure: image.exposure,
             tone: image.tone,
@@ -303,7 +308,7 @@ mod tests {
         assert_eq!(file.camera.position, Some([20.0, 0.0, 5.0]));
         assert_eq!(file.camera.focus, [0.0; 3]);
         assert_eq!((file.camera.up, file.animation), (None, None));
-        assert_eq!(file.disk.normal, [0.0, 0.0, 1.0]);
+        assert_eq!(file.disk.unwrap().normal, [0.0, 0.0, 1.0]);
         assert!(file.image.antialias);
         assert_eq!(file.image.tolerance, 0.001);
     }

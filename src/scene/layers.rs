@@ -27,13 +27,18 @@ pub enum Layer {
     Temperature,
     /// Linear light, red, green and blue of Rec. 709, times the pixel's coverage.
     Colour,
+    /// The direction in which the ray of the pixel's centre leaves: a unit vector in the scene's axes.
+    Sky,
+    /// The place of that direction in a panorama that is turned as the scene's sky: `u = ½ − longitude/2π` and
+    /// `v = ½ + latitude/π`.
+    SkyUv,
     /// The share of the pixel's square that hides the sky: covered by the disk or by the hole's shadow.
     Alpha,
 }
 
 impl Layer {
     /// The layers that a scene may name.
-    pub const NAMED: [Self; 8] = [
+    pub const NAMED: [Self; 10] = [
         Self::Coverage,
         Self::Order,
         Self::Radius,
@@ -42,6 +47,8 @@ impl Layer {
         Self::EmissionCosine,
         Self::Temperature,
         Self::Colour,
+        Self::Sky,
+        Self::SkyUv,
     ];
 
     /// The layer's name.
@@ -55,6 +62,8 @@ impl Layer {
             Self::EmissionCosine => "emission_cosine",
             Self::Temperature => "temperature",
             Self::Colour => "colour",
+            Self::Sky => "sky",
+            Self::SkyUv => "sky_uv",
             Self::Alpha => "alpha",
         }
     }
@@ -66,10 +75,14 @@ impl Layer {
 
     /// The numbers that it has for each pixel.
     pub fn channels(self) -> usize {
-        if self == Self::Colour { 3 } else { 1 }
+        match self {
+            Self::Colour | Self::Sky => 3,
+            Self::SkyUv => 2,
+            _ => 1,
+        }
     }
 
-    /// What it holds where nothing of the disk is seen.
+    /// What it holds where nothing of the disk is seen; layers of the sky where nothing of the sky is.
     pub fn nothing(self) -> f32 {
         match self {
             Self::Coverage | Self::Colour | Self::Alpha => 0.0,
@@ -78,7 +91,9 @@ impl Layer {
             | Self::Azimuth
             | Self::Redshift
             | Self::EmissionCosine
-            | Self::Temperature => f32::NAN,
+            | Self::Temperature
+            | Self::Sky
+            | Self::SkyUv => f32::NAN,
         }
     }
 }
@@ -118,6 +133,12 @@ impl LayerSet {
             }
             Ok(set.with(layer))
         })
+    }
+
+    /// The same set without a layer.
+    #[must_use]
+    pub fn without(self, layer: Layer) -> Self {
+        Self(self.0 & !(1 << layer as u16))
     }
 
     /// Whether a layer is in it.

@@ -56,11 +56,14 @@ const PARALLEL: f64 = 16.0 * f64::EPSILON;
 ///
 /// # Errors
 /// [`SceneError::Value`] for the first value that is not allowed.
-pub(super) fn scene(camera: &Camera, radius: f64, disk: &Disk) -> Result<(), SceneError> {
+pub(super) fn scene(camera: &Camera, radius: f64, disk: Option<&Disk>) -> Result<(), SceneError> {
     // Finite keyframes can have values between them that are not.
     finite_vector("camera.position", camera.position.to_array())?;
     finite_vector("camera.focus", camera.focus.to_array())?;
     finite_direction("camera.up", camera.up.to_array())?;
+    let Some(disk) = disk else {
+        return check_camera(camera, radius);
+    };
     finite_direction("disk.normal", disk.normal.to_array())?;
     check_camera(camera, radius)?;
     edges(disk.inner, disk.outer)?;
@@ -399,6 +402,20 @@ mod tests {
         refused(&[("inner", "-5.0")], &["disk.inner", "ISCO"]);
         refused(&[("outer", "3.0")], &["disk.outer", "disk.inner"]);
         refused(&[("outer", "2.0")], &["disk.outer", "disk.inner"]);
+    }
+
+    #[test]
+    fn without_a_disk_its_place_is_free() {
+        let sky_in_place = |toml: &str| {
+            let (camera, rest) = toml.split_once("[disk]").unwrap();
+            let image = &rest[rest.find("[image]").unwrap()..];
+            Scene::from_toml(&format!("{camera}[sky]\n{image}"))
+        };
+        assert!(sky_in_place(GOOD).is_ok());
+        let inside = GOOD.replace("[20.0, 0.0, 5.0]", "[5.0, 0.0, 0.0]");
+        assert!(sky_in_place(&inside).is_ok() && Scene::from_toml(&inside).is_err());
+        let horizon = sky_in_place(&GOOD.replace("[20.0, 0.0, 5.0]", "[0.5, 0.0, 0.0]"));
+        assert!(horizon.unwrap_err().to_string().contains("horizon"));
     }
 
     #[test]

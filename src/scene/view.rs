@@ -87,9 +87,10 @@ pub struct View {
 }
 
 impl View {
-    /// The view of a scene.
+    /// The view of a scene. Without a disk it takes +z as the disk's normal.
     pub fn new(scene: &Scene) -> Self {
-        let (camera, disk, image) = (scene.camera(), scene.disk(), scene.image());
+        let (camera, image) = (scene.camera(), scene.image());
+        let normal = scene.disk().map_or(DVec3::Z, |disk| disk.normal);
         let radius = scene.radius();
         let p = direction(camera.position);
 
@@ -117,8 +118,8 @@ impl View {
             view
         };
 
-        let n_p = cosine(disk.normal, camera.position);
-        let p_cross_n = unit_cross(camera.position, disk.normal);
+        let n_p = cosine(normal, camera.position);
+        let p_cross_n = unit_cross(camera.position, normal);
         let sine = p_cross_n.length();
         let (n_a, a) = if sine > PARALLEL {
             // The second cross product makes â ⟂ p̂ to the last digit; p̂ × n alone, a difference, is not.
@@ -145,7 +146,7 @@ impl View {
             slope_scale: u0 * ((radius - 1.0) / radius).sqrt(),
             n_p,
             n_a,
-            normal: direction(disk.normal),
+            normal: direction(normal),
             outward: p,
             across: a,
             level: b,

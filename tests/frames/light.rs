@@ -102,7 +102,7 @@ impl Naive {
         let d = (f + right * x + up * y).normalize();
         let p = camera.position.normalize();
         let across = d - p * d.dot(p);
-        let normal = scene.disk().normal.normalize();
+        let normal = scene.disk().unwrap().normal.normalize();
         let scale = view.radius() / (1.0 - 1.0 / view.radius()).sqrt();
         Self {
             normal,
@@ -160,8 +160,8 @@ fn sights_are_what_the_definitions_say() {
     };
     let result = TestRunner::new(config).run(&(any_scene(), turned), |((_, scene), normal)| {
         let disk = Disk {
-            normal: normal.unwrap_or(scene.disk().normal),
-            ..*scene.disk()
+            normal: normal.unwrap_or(scene.disk().unwrap().normal),
+            ..*scene.disk().unwrap()
         };
         let size = ImageSize {
             width: 8,
@@ -211,7 +211,8 @@ fn check_by_definition(
     if blur > 1e-3 || at_ends {
         return Ok(false);
     }
-    let (u_inner, u_outer) = (1.0 / scene.disk().inner, 1.0 / scene.disk().outer);
+    let disk = scene.disk().unwrap();
+    let (u_inner, u_outer) = (1.0 / disk.inner, 1.0 / disk.outer);
     let mut known = None;
     for k in 0..8 {
         let angle = first + f64::from(k) * PI;

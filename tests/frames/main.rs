@@ -39,4 +39,5 @@ mod outline;
 mod photon_rings;
 mod renderer;
 mod symmetry;
+mod without_disk;
 mod zoomed_edges;

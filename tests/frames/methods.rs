@@ -42,7 +42,9 @@ pub(crate) fn sees_disk_by(
     if s == 0.0 {
         return false;
     }
-    let disk = scene.disk();
+    let Some(disk) = scene.disk() else {
+        return false;
+    };
     let start = Ray::new(view.u0(), view.dudphi(ray)).unwrap();
     let events = orbits.follow(start, &[disk.inner, disk.outer]).unwrap();
     let first = view.plane_crossing(ray.ta, s);

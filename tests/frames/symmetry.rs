@@ -55,14 +55,15 @@ fn with_disk(scene: &Scene, edges: (f64, f64)) -> Scene {
         camera.focus,
         camera.up,
         camera.fov_degrees,
-        scene.disk().normal,
+        scene.disk().unwrap().normal,
         edges,
         (image.width, image.height),
     )
 }
 
 fn rotated(scene: &Scene, rotation: DQuat) -> Scene {
-    let (camera, disk, image) = (scene.camera(), scene.disk(), scene.image());
+    let (camera, disk) = (scene.camera(), scene.disk().unwrap());
+    let image = scene.image();
     described(
         rotation * camera.position,
         rotation * camera.focus,
@@ -490,7 +491,8 @@ fn the_middle_of_the_hole_is_black() {
 fn neighbouring_disks_make_one() {
     let lookup = table("standard").lookup();
     for (k, scene) in all_kinds().iter().enumerate() {
-        let (inner, outer) = (scene.disk().inner, scene.disk().outer);
+        let disk = scene.disk().unwrap();
+        let (inner, outer) = (disk.inner, disk.outer);
         let whole = by_curves(scene, &lookup);
         for between in [inner + 1e-3, 5.0, 8.0, outer - 1e-3] {
             let near = by_curves(&with_disk(scene, (inner, between)), &lookup);

@@ -672,7 +672,7 @@ fn far_spec() -> CurveSpec {
     CurveSpec {
         pixel: 1e-5 * u0,
         tolerance: 1e-3,
-        ..CurveSpec::all_round(u0, u0 * (1.0 - u0).sqrt(), (3.0, 12.0))
+        ..CurveSpec::all_round(u0, u0 * (1.0 - u0).sqrt(), Some((3.0, 12.0)))
     }
 }
 

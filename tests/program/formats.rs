@@ -155,7 +155,7 @@ fn light_that_makes_no_sense_is_refused_with_what_to_change() {
             "[image]\nlayers = [\"depth\"]",
             &[
                 "depth",
-                "coverage, order, radius, azimuth, redshift, emission_cosine, temperature, colour",
+                "coverage, order, radius, azimuth, redshift, emission_cosine, temperature, colour, sky, sky_uv",
             ],
         ),
     ] {

@@ -243,7 +243,7 @@ mod tests {
         assert!(right.luminance.unwrap().max < 1e-5, "{right:?}");
         let mut camera = *scene.camera();
         camera.position *= 1.01;
-        let farther = Scene::new(camera, *scene.disk(), scene.image()).unwrap();
+        let farther = scene.clone().with_camera(camera).unwrap();
         let farther = farther
             .with_antialias(false)
             .with_light(scene.light())

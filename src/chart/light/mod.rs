@@ -176,12 +176,7 @@ fn time(
 fn at_another_radius(scene: &Scene) -> Result<Scene, ChartError> {
     let mut camera = *scene.camera();
     camera.position *= 1.0 + NEW_RADIUS;
-    let other = Scene::new(camera, *scene.disk(), scene.image())?
-        .with_antialias(scene.antialias())
-        .with_tolerance(scene.tolerance())?
-        .with_exposure(scene.exposure())?
-        .with_tone(scene.tone());
-    Ok(other.with_light(scene.light())?)
+    Ok(scene.clone().with_camera(camera)?)
 }
 
 /// Measures the errors of one setting. `budget` is the number of pixels whose rays may be followed.

@@ -56,6 +56,9 @@ struct EdgeSample {
 impl ExactEdges {
     /// Finds the edges at `places` angles φ₁.
     pub(super) fn new(scene: &Scene, view: &View, places: u32) -> Self {
+        let radii = scene
+            .disk()
+            .map_or((0.0, 0.0), |disk| (disk.inner, disk.outer));
         let spec = CurveSpec::new(scene, view, scene.tolerance());
         let (low, high) = spec.window.cotangent;
         let (from, to) = (libm::atan2(1.0, high), libm::atan2(1.0, low));
@@ -86,7 +89,7 @@ impl ExactEdges {
         }
         Self {
             spec,
-            radii: (scene.disk().inner, scene.disk().outer),
+            radii,
             samples,
         }
     }

@@ -40,7 +40,8 @@ pub(super) fn run(
     let method = options::method(args, checked, report)?;
     let table = args.method.table_path(needed);
     let curves = draw::curves(&needs, &method);
-    let map = form.needs_map().then(|| draw::map(&curves, &method));
+    let shows_disk = form.needs_map() && scene.disk().is_some();
+    let map = shows_disk.then(|| draw::map(&curves, &method));
     let drawn = (&curves, map.as_ref(), form);
     print(&text(&scene, &needs, drawn, &method, table.as_deref()))?;
     Ok(())
@@ -97,7 +98,12 @@ fn text(
         label = "";
     }
     if curves.orders().is_empty() {
-        line(label, "none: the disk is not in the picture".into());
+        let why = if scene.disk().is_some() {
+            "none: the disk is not in the picture"
+        } else {
+            "none: the scene has no disk"
+        };
+        line(label, why.into());
     }
     if let Some(thin) = curves.left_out() {
         let thickness = figure(thin.thickness);

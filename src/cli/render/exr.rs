@@ -1,7 +1,8 @@
 //! Frames as OpenEXR files.
 //!
 //! One part of 32-bit floats, compressed by ZIP in blocks of 16 rows. Colour is in the channels `R`, `G`, `B` and, with
-//! the alpha layer, `A`: linear and premultiplied, with the chromaticities of Rec. 709. Each other layer is a channel
+//! the alpha layer, `A`: linear and premultiplied, with the chromaticities of Rec. 709. The direction of the
+//! sky is in `sky.x`, `sky.y` and `sky.z`, its place in a panorama in `sky.u` and `sky.v`. Each other layer is a channel
 //! `disk.NAME`. Text attributes hold the program's version (`software`) and the [`FrameOrigin`]: `darkness:scene`,
 //! `darkness:table`, `darkness:frame`. The format does not check its data, so `darkness:crc32` holds the CRC-32 of the
 //! whole file with eight zeros in its own place.
@@ -130,6 +131,8 @@ fn channels_of(plane: &Plane) -> Vec<Channel<'_>> {
     let names = match plane.layer {
         Layer::Colour => vec!["R".into(), "G".into(), "B".into()],
         Layer::Alpha => vec!["A".into()],
+        Layer::Sky => vec!["sky.x".into(), "sky.y".into(), "sky.z".into()],
+        Layer::SkyUv => vec!["sky.u".into(), "sky.v".into()],
         layer => vec![format!("disk.{}", layer.name())],
     };
     let channel = |(offset, name)| Channel {
@@ -253,7 +256,14 @@ mod tests {
 
     /// Layers with numbers that tell where they belong.
     fn planes() -> Vec<Plane> {
-        let layers = [Layer::Order, Layer::Redshift, Layer::Colour, Layer::Alpha];
+        let layers = [
+            Layer::Order,
+            Layer::Redshift,
+            Layer::Colour,
+            Layer::Sky,
+            Layer::SkyUv,
+            Layer::Alpha,
+        ];
         let plane = |layer: Layer| {
             let values = (0..5 * 37 * layer.channels()).map(|i| (i as f32).sqrt() - 1.0);
             Plane {
@@ -293,7 +303,22 @@ mod tests {
             .iter()
             .map(|channel| channel.name.to_string())
             .collect();
-        assert_eq!(names, ["A", "B", "G", "R", "disk.order", "disk.redshift"]);
+        assert_eq!(
+            names,
+            [
+                "A",
+                "B",
+                "G",
+                "R",
+                "disk.order",
+                "disk.redshift",
+                "sky.u",
+                "sky.v",
+                "sky.x",
+                "sky.y",
+                "sky.z"
+            ]
+        );
         let bits = |channel: usize| -> Vec<u32> {
             let values = channels[channel].sample_data.values_as_f32();
             values.map(f32::to_bits).collect()
@@ -305,10 +330,9 @@ mod tests {
                 .map(|value| value.to_bits())
                 .collect()
         };
-        for (channel, (plane, offset)) in [(3, 0), (2, 2), (2, 1), (2, 0), (0, 0), (1, 0)]
-            .into_iter()
-            .enumerate()
-        {
+        let places = [(5, 0), (2, 2), (2, 1), (2, 0), (0, 0), (1, 0)];
+        let sky = [(4, 0), (4, 1), (3, 0), (3, 1), (3, 2)];
+        for (channel, (plane, offset)) in places.into_iter().chain(sky).enumerate() {
             assert_eq!(bits(channel), expected(&planes[plane], offset), "{channel}");
         }
     }

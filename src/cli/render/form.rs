@@ -35,10 +35,10 @@ pub(super) fn checked(
 /// The format cannot hold them.
 pub(super) fn of(animation: &Animation, format: Format) -> anyhow::Result<Form> {
     let (layers, bits) = (animation.layers(), animation.bits());
-    let is_lit = animation.light().is_some();
+    let in_colour = animation.shows_colour();
     let name = format.extension();
     if format.has_layers() {
-        return Ok(Form::Layers(with_defaults(layers, format, is_lit)));
+        return Ok(Form::Layers(with_defaults(layers, format, in_colour)));
     }
     if !layers.is_empty() {
         return Err(misuse(format!(
@@ -51,9 +51,9 @@ pub(super) fn of(animation: &Animation, format: Format) -> anyhow::Result<Form> 
              files"
         )));
     }
-    if is_lit && format == Format::Y4mGray {
+    if in_colour && format == Format::Y4mGray {
         return Err(misuse(
-            "y4m-gray films hold masks, and this scene has light; choose --format y4m, or remove [disk.light]",
+            "y4m-gray films hold masks, and this scene has colour; choose --format y4m, or remove [disk.light] and [sky]",
         ));
     }
     let ImageSize { width, height } = animation.image();
@@ -66,7 +66,7 @@ pub(super) fn of(animation: &Animation, format: Format) -> anyhow::Result<Form> 
             even(height)
         )));
     }
-    Ok(match (is_lit, bits) {
+    Ok(match (in_colour, bits) {
         (false, 16) => Form::Grey16,
         (false, _) => Form::Grey8,
         (true, 16) => Form::Rgb16,
@@ -83,10 +83,10 @@ pub(super) fn expected(args: &RenderArgs, animation: &Animation) -> anyhow::Resu
     checked(args, animation, format)
 }
 
-/// The layers of a file: those that the scene names, or else coverage, and colour where there is light. An OpenEXR file
+/// The layers of a file: those that the scene names, or else coverage, and colour where there is any. An OpenEXR file
 /// with colour has alpha too.
-fn with_defaults(layers: LayerSet, format: Format, is_lit: bool) -> LayerSet {
-    let layers = match (layers.is_empty(), is_lit) {
+fn with_defaults(layers: LayerSet, format: Format, in_colour: bool) -> LayerSet {
+    let layers = match (layers.is_empty(), in_colour) {
         (false, _) => layers,
         (true, false) => LayerSet::default().with(Layer::Coverage),
         (true, true) => [Layer::Coverage, Layer::Colour].into_iter().collect(),

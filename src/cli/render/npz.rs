@@ -1,8 +1,8 @@
 //! Frames as NumPy archives.
 //!
 //! An `.npz` file is a ZIP archive of deflated `.npy` files: one array for each layer, by the layer's name. Arrays have
-//! the shape (height, width), or (height, width, 3) for colour, and hold 32-bit floats, the order 8-bit integers. The
-//! first array, `darkness`, is a text with the program's version and the [`FrameOrigin`], a line each. ZIP
+//! the shape (height, width), or (height, width, n) where a pixel has n numbers, and hold 32-bit floats, the order 8-bit
+//! integers. The first array, `darkness`, is a text with the program's version and the [`FrameOrigin`], a line each. ZIP
 //! checks the arrays but not its own directory, so the archive's comment is the CRC-32 of all before it.
 //!
 //! The formats: PKWARE's APPNOTE.TXT 6.3.10 (4.3), and NumPy's `numpy.lib.format` (version 1.0).
@@ -196,8 +196,15 @@ mod tests {
         height: 2,
     };
 
-    fn planes() -> [Plane; 3] {
-        [Layer::Order, Layer::Radius, Layer::Colour].map(|layer| Plane {
+    fn planes() -> [Plane; 5] {
+        [
+            Layer::Order,
+            Layer::Radius,
+            Layer::Colour,
+            Layer::Sky,
+            Layer::SkyUv,
+        ]
+        .map(|layer| Plane {
             layer,
             values: (0..6 * layer.channels()).map(|i| i as f32 - 1.0).collect(),
         })
@@ -246,6 +253,16 @@ mod tests {
                 "'<f4', 'fortran_order': False, 'shape': (2, 3, 3), }",
                 floats(18).collect(),
             ),
+            (
+                "sky.npy",
+                "'<f4', 'fortran_order': False, 'shape': (2, 3, 3), }",
+                floats(18).collect(),
+            ),
+            (
+                "sky_uv.npy",
+                "'<f4', 'fortran_order': False, 'shape': (2, 3, 2), }",
+                floats(12).collect(),
+            ),
         ] {
             let (head, data) = arrays[name].split_at(128);
             assert!(
@@ -255,7 +272,7 @@ mod tests {
             assert!(String::from_utf8_lossy(head).contains(header), "{name}");
             assert_eq!(data, values, "{name}");
         }
-        assert_eq!(arrays.len(), 4);
+        assert_eq!(arrays.len(), 6);
     }
 
     #[test]

@@ -47,9 +47,9 @@ pub(super) fn animation(args: &RenderArgs) -> anyhow::Result<Animation> {
         animation = animation.with_bits(bits)?;
     }
     if let Some(stops) = args.exposure {
-        if animation.light().is_none() {
+        if !animation.shows_colour() {
             return Err(misuse(
-                "--exposure changes the light of a disk, and this scene's has none; give it a [disk.light], or leave \
+                "--exposure changes light, and this scene has none; give it a [disk.light] or a [sky], or leave \
                  --exposure out",
             ));
         }

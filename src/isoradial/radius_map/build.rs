@@ -77,11 +77,11 @@ impl<'a, A: SweptAngles> PieceRays<'a, A> {
 
     /// The sections of the whole axis.
     pub(super) fn sections(&self) -> Vec<RadiusSection> {
-        let spec = self.curves.spec();
+        let (u_outer, u_inner) = self.curves.u_edges();
         let beyond = |room: f64| (room / self.wide()).clamp(0.0, MARGIN);
         let tau = Span::new(
-            -beyond(spec.u_outer * (1.0 - OUTERMOST_SHARE)),
-            1.0 + beyond(INNERMOST_U - spec.u_inner),
+            -beyond(u_outer * (1.0 - OUTERMOST_SHARE)),
+            1.0 + beyond(INNERMOST_U - u_inner),
         );
         let mut sections = Vec::new();
         let lines = Chebyshev::new(MOST);
@@ -123,8 +123,8 @@ impl<'a, A: SweptAngles> PieceRays<'a, A> {
 
     /// How much greater u is on the inner edge than on the outer one.
     fn wide(&self) -> f64 {
-        let spec = self.curves.spec();
-        spec.u_inner - spec.u_outer
+        let (u_outer, u_inner) = self.curves.u_edges();
+        u_inner - u_outer
     }
 
     /// The edges through points of the curves. They need not be right, only near.
@@ -144,7 +144,7 @@ impl<'a, A: SweptAngles> PieceRays<'a, A> {
 
     /// The degrees along x and τ, from lines along either.
     fn degrees(&self, frame: &Frame, lines: &Chebyshev) -> Option<(usize, usize)> {
-        let tolerance = 0.25 * self.tolerance() * self.curves.spec().u_outer;
+        let tolerance = 0.25 * self.tolerance() * self.curves.u_edges().0;
         let degree = |values: &[f64]| degree_of(&lines.coefficients(values), tolerance);
         let mut degrees = (frame.edges[0].len() - 1, LEAST);
         let columns: Vec<_> = lines.nodes().map(|share| self.at(frame, share)).collect();
@@ -247,9 +247,8 @@ impl<A: SweptAngles> Rays<'_, A> {
     /// Returns u at a share of τ, from a guess of it or from NaN; `None` where the ray does not meet the plane.
     fn u(&self, tau_share: f64, guess: f64) -> Option<f64> {
         let tau = self.tau.at(tau_share);
-        let spec = self.of.curves.spec();
         // At the pole, and everywhere in flat space.
-        let flat = spec.u_outer + tau * self.of.wide();
+        let flat = self.of.curves.u_edges().0 + tau * self.of.wide();
         let pole = self.of.piece.has_pole();
         if pole && self.x <= 0.0 {
             return Some(flat);

@@ -63,10 +63,27 @@ pub struct Animation {
     focus: Track<3>,
     up: Up,
     fov: Track<1>,
+    disk: Option<MovingDisk>,
+    settings: ImageSettings,
+}
+
+/// A disk whose axis may turn.
+#[derive(Debug, Clone, PartialEq)]
+struct MovingDisk {
     inner: f64,
     outer: f64,
     normal: Directions,
-    settings: ImageSettings,
+}
+
+impl MovingDisk {
+    /// The disk at a time.
+    fn at(&self, time: f64) -> Disk {
+        Disk {
+            inner: self.inner,
+            outer: self.outer,
+            normal: self.normal.at(time),
+        }
+    }
 }
 
 /// What is up in the picture.
@@ -136,7 +153,24 @@ impl Animation {
         })?;
         let normal = keys.directions("animation.keyframe.normal", |keyframe| keyframe.normal)?;
         let focus_of_scene = validate::finite_vector("camera.focus", file.camera.focus)?;
-        let normal_of_scene = validate::finite_direction("disk.normal", file.disk.normal)?;
+        let disk = match &file.disk {
+            Some(disk) => {
+                let still = validate::finite_direction("disk.normal", disk.normal)?;
+                Some(MovingDisk {
+                    inner: disk.inner,
+                    outer: disk.outer,
+                    normal: normal.unwrap_or_else(|| Directions::still(still)),
+                })
+            }
+            None if file.sky.is_none() => return Err(SceneError::Empty),
+            None if normal.is_some() => {
+                return Err(SceneError::toml(
+                    "animation.keyframe.normal turns a disk, and the scene has none; add the table [disk], or remove \
+                     the key from all keyframes",
+                ));
+            }
+            None => None,
+        };
         let animation = Self {
             frames,
             rate,
@@ -144,16 +178,16 @@ impl Animation {
             focus: Track::or_still(&focus, focus_of_scene.to_array(), interpolation),
             up,
             fov: Track::or_still(&fov, [file.camera.fov], interpolation),
-            inner: file.disk.inner,
-            outer: file.disk.outer,
-            normal: normal.unwrap_or_else(|| Directions::still(normal_of_scene)),
+            disk,
             settings,
             file: SceneFile {
                 animation: table,
                 ..file
             },
         };
-        validate::edges(animation.inner, animation.outer)?;
+        if let Some(disk) = &animation.disk {
+            validate::edges(disk.inner, disk.outer)?;
+        }
         if animation.is_still() {
             animation.frame(1)?;
         }
@@ -202,12 +236,8 @@ impl Animation {
             },
             fov_degrees: self.fov.at(time)[0],
         };
-        let disk = Disk {
-            inner: self.inner,
-            outer: self.outer,
-            normal: self.normal.at(time),
-        };
-        let (light, sky) = (self.file.disk.light, self.file.sky.clone());
+        let disk = self.disk.as_ref().map(|disk| disk.at(time));
+        let (light, sky) = (self.file.light(), self.file.sky.clone());
         Scene::at_radius(camera, radius, disk, light, sky, self.settings).map_err(|error| {
             if self.is_still() {
                 error
@@ -223,8 +253,11 @@ impl Animation {
     /// Those of [`Self::frame`], and [`SceneError::InFrame`] for a camera that passes through the disk.
     pub fn check(&self, number: u32) -> Result<Scene, SceneError> {
         let scene = self.frame(number)?;
+        let Some(disk) = &self.disk else {
+            return Ok(scene);
+        };
         let (mut before, mut after) = (f64::from(number), f64::from(number) + 1.0);
-        let side = |time| cosine(self.position.at(time).position, self.normal.at(time));
+        let side = |time| cosine(self.position.at(time).position, disk.normal.at(time));
         let first = side(before);
         if number == self.frames || first * side(after) >= 0.0 {
             return Ok(scene);
@@ -240,11 +273,11 @@ impl Animation {
         let CameraPlace {
             position, radius, ..
         } = self.position.at(after);
-        if (self.inner..=self.outer).contains(&radius) {
+        if (disk.inner..=disk.outer).contains(&radius) {
             let reason = format!(
                 "on the way to the next frame the camera passes through the disk's matter, at radius {radius:.6} \
                  between disk.inner = {:?} and disk.outer = {:?}; lead it past the disk",
-                self.inner, self.outer
+                disk.inner, disk.outer
             );
             let error = SceneError::value("camera.position", position.to_array(), reason);
             return Err(error.in_frame(number));

@@ -1,8 +1,10 @@
-//! What all frames of an animation have in common: size, edges, light and how it is shown.
+//! What all frames of an animation have in common: size, edges, light, sky and how they are shown.
 
 use super::Animation;
 use crate::scene::error::SceneError;
 use crate::scene::layers::LayerSet;
+use crate::scene::sky::Sky;
+use crate::scene::validate;
 use crate::scene::values::{ImageSize, Light, Tone};
 
 impl Animation {
@@ -13,7 +15,17 @@ impl Animation {
 
     /// The light of the disk; `None` where the disk only covers.
     pub fn light(&self) -> Option<Light> {
-        self.file.disk.light
+        self.file.light()
+    }
+
+    /// The sky of all frames; `None` where it is black.
+    pub fn sky(&self) -> Option<&Sky> {
+        self.file.sky.as_deref()
+    }
+
+    /// Whether frames are in colour: the disk has light, or there is a sky. Else they are masks.
+    pub fn shows_colour(&self) -> bool {
+        self.light().is_some() || self.sky().is_some()
     }
 
     /// The bits of a PNG picture's samples, 8 or 16.
@@ -56,10 +68,13 @@ impl Animation {
     /// The same animation with a shining disk, or with one that only covers (`None`).
     ///
     /// # Errors
-    /// [`SceneError::Value`] for a temperature that is not allowed, and for a disk that no longer has the light of one
-    /// of the layers.
+    /// [`SceneError::Value`] for a temperature that is not allowed, for the light of a scene without a disk, and for a
+    /// disk that no longer has the light of one of the layers.
     pub fn with_light(mut self, light: Option<Light>) -> Result<Self, SceneError> {
-        self.file.disk.light = light;
+        match &mut self.file.disk {
+            Some(disk) => disk.light = light,
+            None => validate::light(light, false)?,
+        }
         self.with_settings()
     }
 
@@ -92,7 +107,7 @@ impl Animation {
     /// The same animation with these layers of data.
     ///
     /// # Errors
-    /// [`SceneError::Value`] for a layer that the disk's light does not have.
+    /// [`SceneError::Value`] for a layer that the scene's light does not have.
     pub fn with_layers(mut self, layers: LayerSet) -> Result<Self, SceneError> {
         self.file.image.layers = layers;
         self.with_settings()

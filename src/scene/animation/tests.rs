@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::View;
+use crate::scene::{Light, View};
 
 const REST: &str = "[disk]\ninner = 3\nouter = 12\n[image]\nwidth = 64\nheight = 36\n";
 
@@ -115,7 +115,7 @@ fn keyframes_are_met_and_what_they_leave_out_is_interpolated() {
         for number in [1, 7, 20, 45, 60] {
             assert_eq!(at(number).camera().focus, DVec3::new(1.0, 2.0, 3.0));
             assert_eq!(at(number).camera().up, DVec3::new(0.0, 1.0, 1.0));
-            assert_eq!(at(number).disk().normal, DVec3::new(0.0, 1.0, 9.0));
+            assert_eq!(at(number).disk().unwrap().normal, DVec3::new(0.0, 1.0, 9.0));
         }
         assert_eq!(
             (at(1).camera().fov_degrees, at(60).camera().fov_degrees),
@@ -287,4 +287,32 @@ fn orbits_that_cannot_be_are_refused_with_their_frame() {
         &orbit("20", "[0, 90]"),
         &["frame 1", "camera.up", "parallel"],
     );
+}
+
+#[test]
+fn an_animation_without_a_disk_passes_through_its_plane_and_turns_no_disk() {
+    let toml = |keyframes: &str| {
+        format!(
+            "[camera]\nposition = [5, 0, 1]\nfov = 40\n[sky]\ngrid = 15\n[image]\nwidth = 64\nheight = 36\n\
+             [animation]\nframes = 10\n{keyframes}"
+        )
+    };
+    let keys = "[[animation.keyframe]]\nframe = 1\nposition = [5, 0, 1]\n\
+        [[animation.keyframe]]\nframe = 10\nposition = [5, 0, -2]\n";
+    let falling = Animation::from_toml(&toml(keys)).unwrap();
+    for number in 1..=falling.frames() {
+        let scene = falling.check(number).unwrap();
+        assert!(scene.disk().is_none() && scene.sky() == falling.sky());
+    }
+    assert_eq!(Animation::from_toml(&falling.to_toml()).unwrap(), falling);
+    assert!(falling.with_light(Some(Light::Bolometric)).is_err());
+
+    let keys = keys.replace("position = [5, 0, -2]", "normal = [0, 1, 1]");
+    let message = Animation::from_toml(&toml(&keys)).unwrap_err().to_string();
+    for word in ["animation.keyframe.normal", "[disk]", "remove the key"] {
+        assert!(message.contains(word), "{message}");
+    }
+    let message = Animation::from_toml(&toml(&keys).replace("[sky]\ngrid = 15\n", ""));
+    let message = message.unwrap_err().to_string();
+    assert!(message.contains("neither a disk nor a sky"), "{message}");
 }

@@ -11,7 +11,7 @@ use crate::scene::values::{Light, Tone};
 
 impl From<&Scene> for SceneFile {
     fn from(scene: &Scene) -> Self {
-        let (camera, disk) = (scene.camera(), scene.disk());
+        let camera = scene.camera();
         Self {
             camera: CameraTable {
                 position: Some(camera.position.to_array()),
@@ -19,12 +19,12 @@ impl From<&Scene> for SceneFile {
                 up: Some(camera.up.to_array()),
                 fov: camera.fov_degrees,
             },
-            disk: DiskTable {
+            disk: scene.disk().map(|disk| DiskTable {
                 inner: disk.inner,
                 outer: disk.outer,
                 normal: disk.normal.to_array(),
                 light: scene.light(),
-            },
+            }),
             image: ImageTable {
                 width: i64::from(scene.image().width),
                 height: i64::from(scene.image().height),
@@ -57,19 +57,8 @@ impl fmt::Display for SceneFile {
         writeln!(f, "focus = {:?}", camera.focus)?;
         line(f, "up", camera.up)?;
         writeln!(f, "fov = {:?}", camera.fov)?;
-        writeln!(f, "\n[disk]")?;
-        writeln!(f, "inner = {:?}", disk.inner)?;
-        writeln!(f, "outer = {:?}", disk.outer)?;
-        writeln!(f, "normal = {:?}", disk.normal)?;
-        match disk.light {
-            Some(Light::BlackBody { temperature }) => {
-                writeln!(
-                    f,
-                    "\n[disk.light]\nmodel = \"blackbody\"\ntemperature = {temperature:?}"
-                )?;
-            }
-            Some(Light::Bolometric) => writeln!(f, "\n[disk.light]\nmodel = \"bolometric\"")?,
-            None => {}
+        if let Some(disk) = disk {
+            write!(f, "\n{disk}")?;
         }
         if let Some(sky) = sky {
             sky::write(f, sky)?;
@@ -95,6 +84,25 @@ impl fmt::Display for SceneFile {
         animation
             .as_ref()
             .map_or(Ok(()), |animation| write!(f, "\n{animation}"))
+    }
+}
+
+impl fmt::Display for DiskTable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "[disk]")?;
+        writeln!(f, "inner = {:?}", self.inner)?;
+        writeln!(f, "outer = {:?}", self.outer)?;
+        writeln!(f, "normal = {:?}", self.normal)?;
+        match self.light {
+            Some(Light::BlackBody { temperature }) => {
+                writeln!(
+                    f,
+                    "\n[disk.light]\nmodel = \"blackbody\"\ntemperature = {temperature:?}"
+                )
+            }
+            Some(Light::Bolometric) => writeln!(f, "\n[disk.light]\nmodel = \"bolometric\""),
+            None => Ok(()),
+        }
     }
 }
 
@@ -168,7 +176,7 @@ mod tests {
             },
             Light::Bolometric,
         ] {
-            file.disk.light = Some(light);
+            file.disk.as_mut().unwrap().light = Some(light);
             let back = SceneFile::parse(&file.to_string()).unwrap();
             assert_eq!(back, file);
             assert!(back.camera.up.is_some_and(|up| up[2].is_sign_negative()));

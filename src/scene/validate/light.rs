@@ -13,11 +13,15 @@ pub const MAX_TEMPERATURE: f64 = 1e9;
 /// The largest exposure, in stops; the smallest is its negative.
 pub const MAX_EXPOSURE: f64 = 100.0;
 
-/// Checks a disk's light: a temperature from [`MIN_TEMPERATURE`] to [`MAX_TEMPERATURE`].
+/// Checks the light of a scene with or without a disk: a temperature from [`MIN_TEMPERATURE`] to [`MAX_TEMPERATURE`].
 ///
 /// # Errors
 /// [`SceneError::Value`]
-pub(in crate::scene) fn light(light: Option<Light>) -> Result<(), SceneError> {
+pub(in crate::scene) fn light(light: Option<Light>, has_disk: bool) -> Result<(), SceneError> {
+    if let Some(light) = light {
+        let reason = "there is no disk that could shine; add the table [disk] or remove this light";
+        SceneError::check(has_disk, "disk.light", light, reason)?;
+    }
     let Some(Light::BlackBody { temperature }) = light else {
         return Ok(());
     };
@@ -54,11 +58,15 @@ pub(in crate::scene) fn bits(bits: i64) -> Result<u8, SceneError> {
     Ok(bits as u8)
 }
 
-/// Checks that a disk with this light has all of `layers`.
+/// Checks that a scene with this light, with a sky or without, has all of `layers`.
 ///
 /// # Errors
 /// [`SceneError::Value`]
-pub(in crate::scene) fn layers(layers: LayerSet, light: Option<Light>) -> Result<(), SceneError> {
+pub(in crate::scene) fn layers(
+    layers: LayerSet,
+    light: Option<Light>,
+    has_sky: bool,
+) -> Result<(), SceneError> {
     let check = |is_allowed, reason| {
         SceneError::check(is_allowed, "image.layers", format_args!("{layers}"), reason)
     };
@@ -67,8 +75,8 @@ pub(in crate::scene) fn layers(layers: LayerSet, light: Option<Light>) -> Result
         "alpha is no layer of its own; files hold it beside colour",
     )?;
     check(
-        !layers.has(Layer::Colour) || light.is_some(),
-        "a disk without light has no colour; add the table [disk.light] or remove this layer",
+        !layers.has(Layer::Colour) || light.is_some() || has_sky,
+        "a disk without light has no colour; add the table [disk.light] or [sky], or remove this layer",
     )?;
     check(
         !layers.has(Layer::Temperature) || matches!(light, Some(Light::BlackBody { .. })),
@@ -235,7 +243,11 @@ mod tests {
         refused(
             BLACK_BODY,
             "layers = [\"alpha\"]",
-            &["line", "\"alpha\"", "emission_cosine, temperature, colour"],
+            &[
+                "line",
+                "\"alpha\"",
+                "emission_cosine, temperature, colour, sky, sky_uv",
+            ],
         );
         refused(
             BLACK_BODY,

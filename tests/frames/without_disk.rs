@@ -1,0 +1,74 @@
+//! Guards against a scene without a disk that shows one, or that cannot be drawn.
+
+use darkness::isoradial::{CurveSpec, Isoradials, RadiusMap, sensitivity};
+use darkness::orbit::exact::Exact;
+use darkness::render::Form;
+use darkness::render::needs::Needs;
+use darkness::scene::{Camera, ImageSize, Layer, LayerSet, Scene, Sky, View};
+use darkness::{Renderer, render::pixelwise};
+
+use crate::methods::by_pixels;
+use crate::tables::table;
+
+fn scenes() -> impl Iterator<Item = Scene> {
+    let size = ImageSize {
+        width: 37,
+        height: 21,
+    };
+    let cameras = [
+        Camera::at([15.0, 0.0, 0.0], 60.0),
+        Camera::at([5.0, 0.0, 3.0], 100.0),
+        Camera::at([0.0, 1.2, 0.0], 120.0),
+    ];
+    cameras.into_iter().flat_map(move |camera| {
+        let scene = Scene::without_disk(camera, Sky::default(), size).unwrap();
+        [true, false].map(|antialias| scene.clone().with_antialias(antialias))
+    })
+}
+
+#[test]
+fn its_mask_is_black() {
+    let mut renderer = Renderer::new(table("standard"));
+    for scene in scenes() {
+        let mask = renderer.render(&scene).unwrap().into_raw();
+        assert!(mask.iter().all(|&pixel| pixel == 0));
+        assert!(mask == by_pixels(&scene, &Exact));
+        let view = View::new(&scene);
+        let sight = pixelwise::sight(&scene, &view, &Exact, (18, 10));
+        assert_eq!(sight, Ok(None));
+    }
+}
+
+#[test]
+fn its_data_are_those_of_no_disk() {
+    let layers: LayerSet = [
+        Layer::Coverage,
+        Layer::Order,
+        Layer::Radius,
+        Layer::Redshift,
+    ]
+    .into_iter()
+    .collect();
+    let mut renderer = Renderer::new(table("standard"));
+    for scene in scenes() {
+        for plane in renderer.render_layers(&scene, layers).unwrap() {
+            let nothing = plane.layer.nothing().to_bits();
+            assert!(plane.values.iter().all(|value| value.to_bits() == nothing));
+        }
+    }
+}
+
+#[test]
+fn it_has_no_curves_and_no_needs() {
+    for scene in scenes() {
+        let view = View::new(&scene);
+        let spec = CurveSpec::new(&scene, &view, scene.tolerance());
+        let curves = Isoradials::new(&spec, &Exact);
+        assert!(curves.orders().is_empty() && curves.left_out().is_none());
+        assert!(curves.serves(&spec));
+        assert_eq!(RadiusMap::new(&curves, &Exact).nodes(), 0);
+        assert_eq!(sensitivity(&spec, &Exact), 0.0);
+        let needs = Needs::new(&scene, &view, Form::Grey8);
+        assert_eq!(needs.table().unwrap().name, "draft");
+    }
+}
