@@ -36,10 +36,10 @@ pub fn decode(v: f64) -> f64 {
 pub struct SrgbEncoder {
     /// Polynomials in the cell's fraction, constant term first.
     cells: [[f32; 4]; Self::CELLS],
-    /// For each cell of [`Self::code_cell`], the 8-bit code at its start.
-    codes: Vec<u8>,
-    /// The least light of each 8-bit code; that of code 256 is infinite.
-    thresholds: Vec<f32>,
+    /// For each cell of codes, the 8-bit code at its start.
+    codes: [u8; Self::CODE_CELLS],
+    /// The least light of the code after each 8-bit code.
+    thresholds: [f32; 256],
 }
 
 impl SrgbEncoder {
@@ -54,8 +54,10 @@ impl SrgbEncoder {
 
     /// The bits of a number that tell its cell of codes: no cell has more than two codes.
     const CODE_SHIFT: u32 = f32::MANTISSA_DIGITS - 1 - 7;
-    /// The start of the first cell of codes: code 0 up to there.
-    const FIRST_CODE: f32 = 1.0 / 8192.0;
+    /// The bits of the start of the first cell of codes, 2⁻¹³: code 0 up to there.
+    const FIRST_CODE: u32 = (127 - 13) << (f32::MANTISSA_DIGITS - 1);
+    /// A power of two, as above; 13 octaves of 128 cells and one more are used.
+    const CODE_CELLS: usize = 2048;
 
     /// Computes the cells: 289 powers, and 255 for the codes of 8 bits.
     pub fn new() -> Self {
@@ -68,35 +70,37 @@ impl SrgbEncoder {
             let values = [0.0, 1.0, 2.0, 3.0].map(|i| power_law(start + (end - start) * i / 3.0));
             *cell = super::cubic::through(values).map(|c| c as f32);
         }
-        // Code n begins at n − ½.
-        let least = (1..256).map(|code| decode((f64::from(code) - 0.5) / 255.0) as f32);
-        let thresholds: Vec<f32> = [0.0].into_iter().chain(least).chain([f32::INFINITY]).collect();
-        let cells_of_codes = Self::code_cell(1.0) + 1;
-        let start = |cell: usize| {
-            let first = (Self::FIRST_CODE.to_bits() >> Self::CODE_SHIFT) as usize;
-            f32::from_bits(((first + cell) as u32) << Self::CODE_SHIFT)
-        };
-        let code = |light: f32| thresholds[1..].partition_point(|&least| least <= light) as u8;
+        // Code n + 1 begins at n + ½.
+        let mut thresholds = [f32::INFINITY; 256];
+        for (code, threshold) in thresholds[..255].iter_mut().enumerate() {
+            *threshold = decode((code as f64 + 0.5) / 255.0) as f32;
+        }
+        let mut codes = [0; Self::CODE_CELLS];
+        for (code, place) in codes.iter_mut().zip(Self::FIRST_CODE >> Self::CODE_SHIFT..) {
+            let start = f32::from_bits(place << Self::CODE_SHIFT);
+            *code = thresholds.partition_point(|&next| next <= start).min(255) as u8;
+        }
         Self {
             cells,
-            codes: (0..cells_of_codes).map(|cell| code(start(cell))).collect(),
+            codes,
             thresholds,
         }
     }
 
-    /// The cell of codes of light between [`Self::FIRST_CODE`] and 1.
-    #[inline(always)]
-    fn code_cell(c: f32) -> usize {
-        ((c.to_bits() >> Self::CODE_SHIFT) - (Self::FIRST_CODE.to_bits() >> Self::CODE_SHIFT))
-            as usize
-    }
-
-    /// Returns the nearest 8-bit code of linear light `c`, clipped to 0 and 1.
+    /// Returns the nearest 8-bit code of linear light `c`, clipped to 0 and 1; 0 for NaN.
     #[inline(always)]
     pub fn code8(&self, c: f32) -> u8 {
-        let c = c.max(Self::FIRST_CODE).min(1.0);
-        let code = self.codes[Self::code_cell(c)];
-        code + u8::from(c >= self.thresholds[usize::from(code) + 1])
+        let c = if c > 0.0 { c } else { 0.0 };
+        self.code8_of_bits(if c < 1.0 { c } else { 1.0 }.to_bits())
+    }
+
+    /// Returns [`Self::code8`] of the number from 0 to 1 that has these bits.
+    #[inline(always)]
+    pub(super) fn code8_of_bits(&self, bits: u32) -> u8 {
+        let bits = bits.max(Self::FIRST_CODE);
+        let cell = (bits >> Self::CODE_SHIFT) - (Self::FIRST_CODE >> Self::CODE_SHIFT);
+        let code = self.codes[cell as usize & (Self::CODE_CELLS - 1)];
+        code + u8::from(f32::from_bits(bits) >= self.thresholds[usize::from(code)])
     }
 
     /// Returns the sRGB value of linear light `c`, as [`encode`] does, up to 1e-6.
@@ -186,7 +190,10 @@ mod tests {
             let code = f64::from(encoder.code8(c));
             assert!((code - exact).abs() <= 0.5001, "{c}: {code}, not {exact}");
         }
-        assert_eq!([-1.0, 0.0, 1e-30, 2.0, f32::INFINITY].map(|c| encoder.code8(c)), [0, 0, 0, 255, 255]);
+        assert_eq!(
+            [-1.0, 0.0, 1e-30, 2.0, f32::INFINITY].map(|c| encoder.code8(c)),
+            [0, 0, 0, 255, 255]
+        );
         assert_eq!(encoder.code8(f32::NAN), 0);
     }
 

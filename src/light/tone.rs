@@ -48,13 +48,11 @@ impl DisplayTransform {
     #[inline(always)]
     pub fn rgb8(&self, rgb: [f32; 3]) -> [u8; 3] {
         let scaled = rgb.map(|c| c * self.scale as f32);
-        let (least, greatest) = (
-            scaled[0].min(scaled[1]).min(scaled[2]),
-            scaled[0].max(scaled[1]).max(scaled[2]),
-        );
-        // What is in the gamut and below the highlights is only encoded.
-        if least >= 0.0 && greatest <= START as f32 {
-            return scaled.map(|c| self.encoder.code8(c));
+        // What is in the gamut and below the highlights is only encoded. Bits of numbers that are not negative are in
+        // the order of the numbers, and before those of negative ones.
+        let bits = scaled.map(f32::to_bits);
+        if bits.iter().all(|&bits| bits <= (START as f32).to_bits()) {
+            return bits.map(|bits| self.encoder.code8_of_bits(bits));
         }
         self.displayed(rgb.map(f64::from))
             .map(|c| self.encoder.code8(c as f32))

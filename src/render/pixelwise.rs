@@ -6,8 +6,8 @@ use core::f64::consts::PI;
 use rayon::prelude::*;
 
 use super::error::{RenderError, blank};
-use super::ink::{Averaging, Colours, Data, Ink, PlaneRows, amplitude};
 use super::frame::Threads;
+use super::ink::{Averaging, Colours, Data, Ink, PlaneRows, amplitude};
 use super::planes::Target;
 use super::sky::{FrameSky, SkyShader, SkySight, StarImages};
 use crate::isoradial::Escape;

@@ -198,7 +198,11 @@ impl<A: SweptAngles> Renderer<A> {
         let source = self.source.1.source(scene, form)?;
         let sky = if form.needs_escape(scene) {
             let stars = scene.sky().and_then(|sky| sky.stars.as_ref());
-            if self.sky.as_ref().is_some_and(|(of, _)| of.as_ref() != stars) {
+            if self
+                .sky
+                .as_ref()
+                .is_some_and(|(of, _)| of.as_ref() != stars)
+            {
                 self.sky = None;
             }
             let new = || (stars.cloned(), SkyAtRadius::new(scene, view, angles));

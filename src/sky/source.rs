@@ -21,14 +21,14 @@ impl SkySource {
     /// # Errors
     /// [`SkyError`] for a file that cannot be read.
     pub fn open(sky: &Sky, max_bytes: u64) -> Result<Self, SkyError> {
-        let open = |file: &crate::scene::SkyFile| Panorama::open(&file.path, sky.exposure, max_bytes);
+        let open =
+            |file: &crate::scene::SkyFile| Panorama::open(&file.path, sky.exposure, max_bytes);
         let panorama = sky.panorama.as_ref().map(open).transpose()?;
         let left = max_bytes - panorama.as_ref().map_or(0, Panorama::bytes).min(max_bytes);
         let (stars, bad_rows) = match sky.stars.as_ref().map(|stars| (stars, &stars.source)) {
             None => (None, None),
             Some((stars, StarSource::File(file))) => {
-                let (field, bad_rows) =
-                    StarField::read(&file.path, stars.magnitude_limit, left)?;
+                let (field, bad_rows) = StarField::read(&file.path, stars.magnitude_limit, left)?;
                 (Some(field), Some(bad_rows))
             }
             Some((stars, &StarSource::Synthetic { count, seed })) => {

@@ -24,11 +24,15 @@ fn seen(scene: &Scene, view: &View, orbits: &impl Orbits, pixel: (u32, u32)) -> 
     if let Some(sight) = sight {
         return Seen::Disk(sight);
     }
-    let ray = Ray::new(view.u0(), view.dudphi(view.pixel(pixel.0, pixel.1))).unwrap();
-    match orbits.follow(ray, &[]).unwrap()[0].kind {
-        EventKind::End(Fate::Capture) => Seen::Hole,
-        _ => Seen::Sky,
+    let pixel = view.pixel(pixel.0, pixel.1);
+    let ray = Ray::new(view.u0(), view.dudphi(pixel)).unwrap();
+    let end = orbits.follow(ray, &[]).unwrap()[0];
+    if end.kind == EventKind::End(Fate::Capture) {
+        return Seen::Hole;
     }
+    let [p, a, b] = view.axes();
+    let across = (a * pixel.ta + b * pixel.tb) / pixel.transverse();
+    Seen::Sky((p * end.angle.cos() + across * end.angle.sin()).to_array())
 }
 
 /// Compares every row of every reference, or every `step`th: the same kind and order, azimuths within 1e-12, everything
@@ -37,7 +41,7 @@ fn compare(name: &str, orbits: &impl Orbits, most: f64, step: usize) {
     for scene_name in SCENES {
         let Reference { scene, rows } = reference(scene_name);
         let view = View::new(&scene);
-        let (mut worst, mut lit) = (Worst::default(), 0);
+        let (mut worst, mut lit, mut sky) = (Worst::default(), 0, 0.0_f64);
         for &(pixel, known) in rows.iter().step_by(step) {
             let found = seen(&scene, &view, orbits, pixel);
             match (found, known) {
@@ -46,17 +50,25 @@ fn compare(name: &str, orbits: &impl Orbits, most: f64, step: usize) {
                     worst.add(&found, &known);
                     lit += 1;
                 }
+                (Seen::Sky(found), Seen::Sky(known)) => {
+                    let off = (0..3).fold(0.0, |off: f64, i| off.max((found[i] - known[i]).abs()));
+                    sky = sky.max(off);
+                }
                 _ => assert_eq!(found, known, "{name}, {scene_name}: {pixel:?}"),
             }
         }
         println!(
-            "{name}, {scene_name}: {lit} lit of {}, {worst:?}",
+            "{name}, {scene_name}: {lit} lit of {}, {worst:?}, directions {sky:e}",
             rows.len()
         );
         assert!(lit > 250 / step, "{scene_name}: {lit} lit pixels");
         let most_of_all = worst.radius.max(worst.redshift).max(worst.cosine);
         assert!(most_of_all <= most, "{name}, {scene_name}: {worst:?}");
         assert!(worst.azimuth <= 1e-12, "{name}, {scene_name}: {worst:?}");
+        assert!(
+            sky <= most,
+            "{name}, {scene_name}: directions off by {sky:e}"
+        );
     }
 }
 

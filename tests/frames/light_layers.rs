@@ -29,7 +29,7 @@ fn layers_equal_the_references() {
                 let pixel = j as usize * width + i as usize;
                 let known: Option<Sight> = match known {
                     Seen::Disk(sight) => Some(sight),
-                    Seen::Sky | Seen::Hole => None,
+                    Seen::Sky(_) | Seen::Hole => None,
                 };
                 let found = layers.sight(pixel);
                 let share = layers.plane(Layer::Coverage)[pixel];
@@ -74,7 +74,7 @@ fn alpha_equals_the_references() {
                 let alpha = layers.plane(Layer::Alpha)[j as usize * width + i as usize];
                 let is_so = match known {
                     Seen::Disk(_) | Seen::Hole => alpha == 1.0 || antialias && alpha > 0.0,
-                    Seen::Sky => alpha == 0.0 || antialias && alpha < 1.0,
+                    Seen::Sky(_) => alpha == 0.0 || antialias && alpha < 1.0,
                 };
                 if !is_so {
                     wrong.push(((i, j), alpha, known));

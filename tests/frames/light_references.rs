@@ -19,7 +19,8 @@ pub(crate) const SCENES: [&str; 5] = [
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Seen {
     Disk(Sight),
-    Sky,
+    /// The direction in which its ray leaves.
+    Sky([f64; 3]),
     Hole,
 }
 
@@ -50,7 +51,7 @@ fn row(line: &str) -> ((u32, u32), Seen) {
             redshift: number(6),
             emission_cosine: number(7),
         }),
-        "sky" => Seen::Sky,
+        "sky" => Seen::Sky([8, 9, 10].map(number)),
         "hole" => Seen::Hole,
         other => panic!("{other}: {line}"),
     };

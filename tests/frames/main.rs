@@ -38,6 +38,7 @@ mod needs;
 mod outline;
 mod photon_rings;
 mod renderer;
+mod sky_directions;
 mod symmetry;
 mod without_disk;
 mod zoomed_edges;

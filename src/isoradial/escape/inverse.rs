@@ -3,8 +3,8 @@
 use super::{EscapeCurve, value_and_slope};
 use crate::isoradial::chebyshev::Chebyshev;
 
-/// Coefficients of the polynomial that guesses a root; one step of Newton's makes it exact.
-pub(super) const INVERSE_COEFFICIENTS: usize = 12;
+/// Coefficients of an octave's inverse polynomial.
+pub(super) const INVERSE_COEFFICIENTS: usize = 15;
 
 /// A ray that sweeps a given angle: an image of what lies there.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +26,7 @@ impl Image {
 }
 
 impl EscapeCurve {
-    /// Fits the polynomials that guess roots.
+    /// Fits the inverse polynomials.
     pub(super) fn invert(&mut self) {
         let chebyshev = Chebyshev::new(INVERSE_COEFFICIENTS - 1);
         for (octave, powers) in self.octaves.iter().enumerate() {
@@ -62,7 +62,10 @@ impl EscapeCurve {
     #[inline]
     fn octave_of_angle(&self, angle: f64) -> usize {
         let share = (angle * SHARES_PER_RADIAN) as usize;
-        let Some(&[first, last]) = self.shares.get(share..share + 2).and_then(<[u32]>::first_chunk)
+        let Some(&[first, last]) = self
+            .shares
+            .get(share..share + 2)
+            .and_then(<[u32]>::first_chunk)
         else {
             return self.octaves.len();
         };
@@ -70,17 +73,17 @@ impl EscapeCurve {
         first + self.ends[first + 1..=last].partition_point(|&end| end <= angle)
     }
 
-    /// Returns the ray that sweeps `angle` on its way out, at least 0.
+    /// Returns the ray that sweeps `angle` on its way out, at least 0. It sweeps that up to 1e-9 radians.
     pub fn image(&self, angle: f64) -> Image {
         let octave = self.octave_of_angle(angle);
         let (x, rate) = if octave < self.octaves.len() {
             let (low, high) = (self.ends[octave], self.ends[octave + 1]);
             let place = 1.0 - 2.0 * (angle - low) / (high - low);
-            let inverse = &self.inverses[octave];
-            let guess = inverse.iter().rev().fold(0.0, |sum, c| sum * place + c);
-            let (value, slope) = value_and_slope(&self.octaves[octave], guess);
-            let m = 0.5 * ((guess + (angle - value) / slope).clamp(-1.0, 1.0) + 3.0);
-            (m * power_of_half(octave + 1), -2.0 * m * slope)
+            let (t, slope) = value_and_slope(&self.inverses[octave], place);
+            let m = 0.5 * (t.clamp(-1.0, 1.0) + 3.0);
+            // dΦ is half of high − low for each unit of the place.
+            let rate = m * (high - low) / slope;
+            (m * power_of_half(octave + 1), rate)
         } else {
             let x = libm::exp(self.ends[octave] - angle);
             (libm::ldexp(x, -(octave as i32)), 1.0)

@@ -219,12 +219,12 @@ impl EscapeCurve {
     }
 }
 
-/// Returns a polynomial and its derivative. Its even and its odd powers are summed side by side.
+/// Returns a polynomial of even degree and its derivative. Its even and its odd powers are summed side by side.
 #[inline(always)]
-fn value_and_slope(powers: &[f64; COEFFICIENTS], t: f64) -> (f64, f64) {
+fn value_and_slope<const N: usize>(powers: &[f64; N], t: f64) -> (f64, f64) {
     let square = t * t;
-    let pairs = powers[..COEFFICIENTS - 1].as_chunks::<2>().0;
-    let last = powers[COEFFICIENTS - 1];
+    let pairs = powers[..N - 1].as_chunks::<2>().0;
+    let last = powers[N - 1];
     // Of even + t odd, and of their derivatives to t².
     let (mut even, mut odd) = (last, 0.0);
     let (mut even_slope, mut odd_slope) = (0.0, 0.0);
@@ -234,10 +234,7 @@ fn value_and_slope(powers: &[f64; COEFFICIENTS], t: f64) -> (f64, f64) {
         even = even * square + c;
         odd = odd * square + d;
     }
-    (
-        even + t * odd,
-        odd + 2.0 * t * (even_slope + t * odd_slope),
-    )
+    (even + t * odd, odd + 2.0 * t * (even_slope + t * odd_slope))
 }
 
 /// Returns the octave of x in (0, 1], and the place across it, 1 to 2.

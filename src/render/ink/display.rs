@@ -90,7 +90,10 @@ impl<T: Code> Ink<NODES> for Display<'_, T> {
     fn put_light(&self, band: &mut Self::Band<'_>, row: usize, from: usize, light: &[[f32; 3]]) {
         let pixels = band.colours(row, from, from + light.len());
         for (pixel, light) in pixels.iter_mut().zip(light) {
-            *pixel = T::displayed(&self.colours.display, *light);
+            // Between stars there is nothing, and the band is clear.
+            if *light != [0.0; 3] {
+                *pixel = T::displayed(&self.colours.display, *light);
+            }
         }
     }
 

@@ -16,9 +16,7 @@ impl<'a> Backdrop<'a> {
     /// What a source has; `None` where that is nothing.
     pub(super) fn new(source: &'a SkySource, shader: &SkyShader<'_>) -> Option<Self> {
         let outward = shader.axes()[0];
-        let grid = source
-            .grid()
-            .map(|step| Grid::new(step, outward, -outward));
+        let grid = source.grid().map(|step| Grid::new(step, outward, -outward));
         let backdrop = Self {
             panorama: source.panorama(),
             grid,

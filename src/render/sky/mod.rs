@@ -86,12 +86,7 @@ impl<'a> FrameSky<'a> {
 
     /// Paints runs of a band, given by its first row and its number of rows, into its light. Returns whether there is
     /// any light, of stars too.
-    pub(super) fn paint(
-        &self,
-        rows: (usize, usize),
-        runs: &[Run],
-        light: &mut [[f32; 3]],
-    ) -> bool {
+    pub(super) fn paint(&self, rows: (usize, usize), runs: &[Run], light: &mut [[f32; 3]]) -> bool {
         if let Some(backdrop) = &self.backdrop {
             SkyPainter::new(self.shader, backdrop).paint(rows, runs, light);
         }

@@ -41,12 +41,7 @@ impl<'a> SkyPainter<'a> {
 
     /// Paints pixels of a band, which begins at row `top` of the picture and has `rows` rows: runs, sorted by rows.
     /// `light` holds the band's pixels, row by row.
-    pub(super) fn paint(
-        &self,
-        (top, rows): (usize, usize),
-        runs: &[Run],
-        light: &mut [[f32; 3]],
-    ) {
+    pub(super) fn paint(&self, (top, rows): (usize, usize), runs: &[Run], light: &mut [[f32; 3]]) {
         let width = self.shader.view.width() as usize;
         let mut tiles = SkyTiles {
             painter: self,

@@ -185,11 +185,7 @@ impl StarView<'_> {
         let direction = star.direction;
         let (along, across) = (direction.dot(p), (direction.dot(a), direction.dot(b)));
         let sine = (across.0 * across.0 + across.1 * across.1).sqrt();
-        let first = if projection.shows_first(along) {
-            0
-        } else {
-            1
-        };
+        let first = if projection.shows_first(along) { 0 } else { 1 };
         if first > projection.last {
             return;
         }

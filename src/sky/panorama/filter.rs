@@ -82,7 +82,9 @@ impl Panorama {
                 let t = (j as f64 + 0.5) / n as f64 - 0.5;
                 let u = place[0] as f64 + s * a[0] as f64 + t * b[0] as f64;
                 let v = place[1] as f64 + s * a[1] as f64 + t * b[1] as f64;
-                sum += first.at((u * width - 0.5) as f32, ((1.0 - v) * height - 0.5) as f32).to_array()[0] as f64;
+                sum += first
+                    .at((u * width - 0.5) as f32, ((1.0 - v) * height - 0.5) as f32)
+                    .to_array()[0] as f64;
             }
         }
         sum / (n * n) as f64

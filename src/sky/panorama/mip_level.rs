@@ -115,15 +115,21 @@ impl MipLevel {
         let stride = 6 * self.height;
         let mut values = Vec::with_capacity(6 * height * height + 1);
         values.resize(6 * height * height, 0.0);
-        values.par_chunks_mut(6 * height).enumerate().for_each(|(row, to)| {
-            let rows = &self.values[2 * row * stride..][..2 * stride];
-            let (upper, lower) = rows.split_at(stride);
-            for (to, (a, b)) in to.chunks_exact_mut(3).zip(upper.chunks_exact(6).zip(lower.chunks_exact(6))) {
-                for c in 0..3 {
-                    to[c] = 0.25 * ((a[c] + a[c + 3]) + (b[c] + b[c + 3]));
+        values
+            .par_chunks_mut(6 * height)
+            .enumerate()
+            .for_each(|(row, to)| {
+                let rows = &self.values[2 * row * stride..][..2 * stride];
+                let (upper, lower) = rows.split_at(stride);
+                for (to, (a, b)) in to
+                    .chunks_exact_mut(3)
+                    .zip(upper.chunks_exact(6).zip(lower.chunks_exact(6)))
+                {
+                    for c in 0..3 {
+                        to[c] = 0.25 * ((a[c] + a[c + 3]) + (b[c] + b[c + 3]));
+                    }
                 }
-            }
-        });
+            });
         Some(Self::new(height, values))
     }
 }
