@@ -23,6 +23,7 @@ enum Source {
         scale: f64,
     },
     Grey,
+    White,
 }
 
 impl Radiance {
@@ -35,6 +36,11 @@ impl Radiance {
             },
             Light::Bolometric => Source::Grey,
         })
+    }
+
+    /// The light of a disk that shines evenly: 1 in each colour, whatever the amplitude.
+    pub fn white() -> Self {
+        Self(Source::White)
     }
 
     /// Returns linear red, green and blue of Rec. 709 at the amplitude `y`; nothing where y is not positive. The
@@ -50,6 +56,7 @@ impl Radiance {
                 linear_rgb(black_body::xyz(peak * y.sqrt()).map(|value| value * scale))
             }
             Source::Grey => [y * y; 3],
+            Source::White => [1.0; 3],
         }
     }
 
@@ -60,6 +67,7 @@ impl Radiance {
             // middle of the visible at high ones; T ∝ √y halves the slope.
             Source::BlackBody { peak, .. } => 0.5 + 0.5 * 25_000.0 / (peak * y.sqrt()),
             Source::Grey => 2.0,
+            Source::White => 0.0,
         }
     }
 }
@@ -99,7 +107,7 @@ impl RadianceTable {
         const HUGE: f64 = 1e36;
         let luminance = |y: f32| luminance(radiance.rgb(f64::from(y)));
         let (mut first, mut end) = (1.0, 2.0);
-        while luminance(first) > 1.0 / HUGE {
+        while luminance(first) > 1.0 / HUGE && first > f32::MIN_POSITIVE {
             first *= 0.5;
         }
         while luminance(end) < HUGE && end < GREATEST {
@@ -171,6 +179,8 @@ impl RadianceTable {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::light::{DisplayTransform, Palette};
+    use crate::scene::Tone;
 
     fn lights() -> impl Iterator<Item = Light> {
         [100.0, 300.0, 1000.0, 2500.0, 7000.0, 1e5, 1e7, 1e9]
@@ -221,6 +231,18 @@ mod tests {
             println!("{light:?}: {worst:?} {} cells", table.cells.len());
             assert!(worst[0] < 1e-5 && worst[1] < 1e-5, "{light:?}: {worst:?}");
         }
+    }
+
+    #[test]
+    fn white_is_one_everywhere() {
+        let table = RadianceTable::new(&Radiance::white());
+        for y in [f32::MIN_POSITIVE, 1e-30, 0.3, 1.0, 1e10, f32::INFINITY] {
+            assert_eq!(table.rgb(y), [1.0; 3], "{y}");
+        }
+        assert_eq!(table.rgb(0.0), [0.0; 3]);
+        let display = DisplayTransform::new(0.0, Tone::None);
+        let palette = Palette::new(&table, &display);
+        assert_eq!([0.0, 0.3, 1e20].map(|y| palette.rgb8(y)[0]), [0, 255, 255]);
     }
 
     #[test]

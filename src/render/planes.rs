@@ -58,6 +58,11 @@ impl Form {
         }
     }
 
+    /// Whether it shows the directions in which rays leave.
+    pub fn shows_directions(self) -> bool {
+        matches!(self, Self::Layers(layers) if layers.has(Layer::Sky) || layers.has(Layer::SkyUv))
+    }
+
     /// Whether it shows light.
     pub(super) fn shows_light(self) -> bool {
         match self {

@@ -24,9 +24,9 @@ pub(in crate::render) struct Colours {
 pub(super) type RowLight = [[f32; 3]; TILE.0];
 
 impl Colours {
-    /// Prepares the colours of a scene with light.
-    pub(in crate::render) fn new(light: Light, exposure: f64, tone: Tone) -> Self {
-        let exact = Radiance::new(light);
+    /// Prepares the colours of a disk with light, or of one that is white before a sky (`None`).
+    pub(in crate::render) fn new(light: Option<Light>, exposure: f64, tone: Tone) -> Self {
+        let exact = light.map_or_else(Radiance::white, Radiance::new);
         let radiance = RadianceTable::new(&exact);
         let display = DisplayTransform::new(exposure, tone);
         Self {
@@ -97,11 +97,10 @@ impl Colours {
 pub(in crate::render) struct SharedColours(OnceLock<Colours>);
 
 impl SharedColours {
-    /// The colours of a scene, where it has light and the form shows it.
+    /// The colours of a scene, where it shows any and the form does.
     pub(in crate::render) fn of(&self, scene: &Scene, form: Form) -> Option<&Colours> {
-        let light = scene.light()?;
-        let new = || Colours::new(light, scene.exposure(), scene.tone());
-        form.shows_light().then(|| self.0.get_or_init(new))
+        let new = || Colours::new(scene.light(), scene.exposure(), scene.tone());
+        (scene.shows_colour() && form.shows_light()).then(|| self.0.get_or_init(new))
     }
 }
 

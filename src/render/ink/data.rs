@@ -114,7 +114,10 @@ impl<'a> Data<'a> {
         averaging: Averaging,
     ) -> Result<Self, RenderError> {
         let has_light = match light {
-            None => !layers.has(Layer::Temperature) && !layers.has(Layer::Colour),
+            None => {
+                let is_white = colours.is_some();
+                !layers.has(Layer::Temperature) && (is_white || !layers.has(Layer::Colour))
+            }
             Some(Light::Bolometric) => !layers.has(Layer::Temperature),
             Some(Light::BlackBody { .. }) => true,
         };
