@@ -9,8 +9,9 @@
 //! pixels are large: for `classic` at 1920 × 1080 an edge moves by 0.4 rad for each radian of φ, and a pixel is
 //! 4.8e-4 rad. The photon rings need less: S falls by `e^{−π}` with each order.
 //!
-//! Light and data ([`Form::needs_map`]) have no tolerance in pixels: their promise, radii within 1e-6 of themselves, is
-//! that of the standard table, so that a frame that shows them takes no coarser one.
+//! Light and data ([`Form::needs_map`], [`Form::shows_directions`]) have no tolerance in pixels: their promise, radii
+//! within 1e-6 of themselves and directions within 1e-6 radians, is that of the standard table, so that a frame that
+//! shows them takes no coarser one.
 
 use super::planes::Form;
 use crate::isoradial::{CurveSpec, sensitivity};
@@ -46,7 +47,7 @@ impl Needs {
     pub fn new(scene: &Scene, view: &View, form: Form) -> Self {
         let spec = CurveSpec::new(scene, view, scene.tolerance());
         let sensitivity = sensitivity(&spec, &Exact);
-        let coarsest = if form.needs_map() {
+        let coarsest = if form.needs_map() || form.shows_directions() {
             Spec::standard().tolerance
         } else {
             f64::INFINITY

@@ -402,6 +402,10 @@ mod tests {
         const TOLERANCE: f64 = 1.0 / 512.0;
         for builtin in builtins() {
             let scene = Scene::builtin(builtin.name()).unwrap();
+            // Scenes with a sky have no disk, or show rings of order 3 that are as thin as an arc's error.
+            if scene.sky().is_some() {
+                continue;
+            }
             // Orders as thin as an arc's error have both their edges on one side.
             let view = View::new(&scene);
             let curves = Isoradials::new(&CurveSpec::new(&scene, &view, 0.05), &Exact);

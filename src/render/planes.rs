@@ -60,11 +60,12 @@ impl Form {
 
     /// Whether it shows a scene's sky, or data of it.
     pub fn needs_escape(self, scene: &Scene) -> bool {
-        let has_directions = match self {
-            Self::Layers(layers) => layers.has(Layer::Sky) || layers.has(Layer::SkyUv),
-            _ => false,
-        };
-        has_directions || (self.shows_light() && scene.sky().is_some())
+        self.shows_directions() || (self.shows_light() && scene.sky().is_some())
+    }
+
+    /// Whether it shows the directions in which rays leave.
+    pub fn shows_directions(self) -> bool {
+        matches!(self, Self::Layers(layers) if layers.has(Layer::Sky) || layers.has(Layer::SkyUv))
     }
 
     /// Whether it shows light.

@@ -52,7 +52,7 @@ macro_rules! builtin {
     };
 }
 
-static BUILTINS: [Builtin; 14] = [
+static BUILTINS: [Builtin; 17] = [
     builtin!("classic"),
     builtin!("face-on"),
     builtin!("edge-on"),
@@ -62,16 +62,19 @@ static BUILTINS: [Builtin; 14] = [
     builtin!("lit"),
     builtin!("luminet"),
     builtin!("rings"),
+    builtin!("grid"),
+    builtin!("stars"),
     builtin!("orbit"),
     builtin!("approach"),
     builtin!("tilt"),
     builtin!("lit-orbit"),
     builtin!("plunge"),
+    builtin!("flyby"),
 ];
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Animation, Light, Scene, View};
+    use super::super::{Animation, Light, Scene, StarSource, View};
     use super::*;
 
     #[test]
@@ -139,6 +142,46 @@ mod tests {
                 "{name}"
             );
         }
+    }
+
+    #[test]
+    fn skies_are_what_their_names_say() {
+        let grid = Scene::builtin("grid").unwrap();
+        assert!(grid.disk().is_none() && grid.sky().unwrap().grid == Some(15.0));
+        let stars = Scene::builtin("stars").unwrap();
+        let film = Animation::load("flyby").unwrap();
+        let source = StarSource::Synthetic {
+            count: 20_000,
+            seed: 1,
+        };
+        for sky in [stars.sky(), film.sky()] {
+            assert_eq!(sky.unwrap().stars.as_ref().unwrap().source, source);
+        }
+        let lit = Scene::builtin("lit").unwrap();
+        assert_eq!((stars.disk(), stars.light()), (lit.disk(), lit.light()));
+        assert!(lit.sky().is_none() && film.shows_colour() && grid.shows_colour());
+        assert!(!Scene::builtin(DEFAULT_SCENE).unwrap().shows_colour());
+    }
+
+    #[test]
+    fn the_flyby_passes_above_the_disk_and_the_hole_drifts_through_the_picture() {
+        let film = Animation::load("flyby").unwrap();
+        let mut before = f64::NEG_INFINITY;
+        for number in 1..=film.frames() {
+            let scene = film.check(number).unwrap();
+            assert!((25.0..38.0).contains(&scene.radius()) && scene.camera().position.z > 7.0);
+            let camera = scene.camera();
+            let ahead = (camera.focus - camera.position).normalize();
+            let right = ahead.cross(camera.up).normalize();
+            let x = -camera.position.dot(right) / -camera.position.dot(ahead);
+            let half_width = libm::tan(20_f64.to_radians()) * 16.0 / 9.0;
+            let place = -x / half_width;
+            assert!(place >= before, "frame {number}");
+            before = place;
+            assert!(place.abs() < 1.0, "frame {number}: {place}");
+            assert!(number > 1 || place < -0.9, "{place}");
+        }
+        assert!(before > 0.9, "{before}");
     }
 
     #[test]

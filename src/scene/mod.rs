@@ -1,7 +1,7 @@
-//! Scenes: the camera, the disk and the picture's size.
+//! Scenes: the camera, the disk, the sky and the picture's size.
 //!
 //! A [`Scene`] is read from TOML ([`Scene::load`], [`Scene::from_toml`], [`Scene::builtin`]) or built from values
-//! ([`Scene::new`]). It is checked: every number is finite, the camera is outside the horizon and outside the disk's
+//! ([`Scene::new`], [`Scene::without_disk`]). It is checked: every number is finite, the camera is outside the horizon and outside the disk's
 //! matter and looks somewhere, the disk's orbits are stable. A [`View`] is what a frame computes with, one ray a pixel.
 //!
 //! ```toml
@@ -20,6 +20,17 @@
 //! model = "blackbody"                # required; or "bolometric", grey: all wavelengths together
 //! temperature = 7000.0               # of the hottest ring, kelvin; 100 to 1e9; required for black bodies only
 //!
+//! [sky]                              # default: none, black
+//! panorama = "milky-way.exr"         # default: none; a picture of the whole sky: longitude and latitude
+//! rotation = [0.0, 0.0, 0.0]         # default; yaw, pitch and roll, degrees: the sky is turned about z, y and x
+//! exposure = 0.0                     # default; stops, of the panorama; -100 to 100
+//! stars    = "bright-stars.csv"      # default: none; or { count = 20000, seed = 1 }: random ones, up to 10,000,000
+//! magnitude_limit = 6.5              # default: none; fainter stars are left out
+//! star_exposure = 0.0                # default; stops; at 0 a star of magnitude 0 has the irradiance 1
+//! star_radius = 1e-6                 # default; the angular radius of a star, radians; 0 < radius ≤ 0.01
+//! shift    = true                    # default; stars show the blue shift of a camera near the hole
+//! grid     = 15.0                    # default: none; lines every so many degrees; 1 to 90, divides 180
+//!
 //! [image]
 //! width  = 1920                      # required
 //! height = 1080                      # required
@@ -32,9 +43,16 @@
 //! ```
 //!
 //! Lengths are in Schwarzschild radii. Directions have any length but zero. The layers are `coverage`, `order`,
-//! `radius`, `azimuth`, `redshift`, `emission_cosine`, `temperature` and `colour` ([`Layer`]); `colour` needs
-//! `[disk.light]`, `temperature` needs black bodies. A moving scene has one more table, `[animation]`, which
-//! [`animation`] describes; as a [`Scene`] it is its first frame. Light, exposure and tone are those of the whole film.
+//! `radius`, `azimuth`, `redshift`, `emission_cosine`, `temperature`, `colour`, `sky` and `sky_uv` ([`Layer`]);
+//! `colour` needs `[disk.light]` or `[sky]`, `temperature` needs black bodies.
+//!
+//! A scene needs `[disk]` or `[sky]`, or both. An empty `[sky]` is a black one. Pictures of a scene with light or a sky
+//! are in colour; before a sky, a disk without light is white. Names of files are relative to the folder of the scene's
+//! file, or to the current folder where the scene comes from text. A key that means nothing without another, as
+//! `exposure` without `panorama`, is an error.
+//!
+//! A moving scene has one more table, `[animation]`, which [`animation`] describes; as a [`Scene`] it is its first
+//! frame. Light, sky, exposure and tone are those of the whole film.
 
 pub mod animation;
 mod builtin;

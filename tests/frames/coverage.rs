@@ -101,7 +101,12 @@ fn the_built_in_scenes() {
             let errors = Errors::new(&pixels, &picture.swept(&picture.orders()), picture.width());
             errors.print(&format!("{name}, {} × {}", size.0, size.1));
             assert_within(&errors, (MOST.0, 0.007, 5e-5), name);
-            assert!(errors.edge > 100, "{name}: nothing to get wrong");
+            // One has no disk, and in a tall picture of the other most of the disk is beyond the side.
+            let is_empty = name == "grid" || (name == "flyby" && size.0 < size.1);
+            assert!(
+                errors.edge > 100 || is_empty,
+                "{name}: nothing to get wrong"
+            );
         }
     }
 }

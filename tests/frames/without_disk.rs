@@ -1,4 +1,5 @@
-//! Guards against a scene without a disk that shows one, or that cannot be drawn.
+//! Guards against a scene without a disk that shows one, or that cannot be drawn; against a disk before a sky that is
+//! not white.
 
 use darkness::isoradial::{CurveSpec, Isoradials, RadiusMap, sensitivity};
 use darkness::orbit::exact::Exact;
@@ -71,4 +72,39 @@ fn it_has_no_curves_and_no_needs() {
         let needs = Needs::new(&scene, &view, Form::Grey8);
         assert_eq!(needs.table().unwrap().name, "draft");
     }
+}
+
+#[test]
+fn directions_need_the_standard_table() {
+    for scene in scenes() {
+        for layer in [Layer::Sky, Layer::SkyUv] {
+            let form = Form::Layers(LayerSet::default().with(layer));
+            let needs = Needs::new(&scene, &View::new(&scene), form);
+            assert_eq!(needs.table().unwrap().name, "standard");
+            assert!(!form.needs_map());
+        }
+    }
+}
+
+#[test]
+fn before_a_sky_a_disk_without_light_is_white() {
+    let classic = Scene::builtin("classic")
+        .and_then(|scene| scene.with_size(96, 54))
+        .and_then(|scene| scene.with_sky(Some(Sky::default())))
+        .unwrap();
+    let mut renderer = Renderer::new(table("standard"));
+    for antialias in [true, false] {
+        let scene = classic.clone().with_antialias(antialias);
+        let layers = [Layer::Coverage, Layer::Colour].into_iter().collect();
+        let planes = renderer.render_layers(&scene, layers).unwrap();
+        let (shares, colours) = (&planes[0].values, &planes[1].values);
+        for (share, colour) in shares.iter().zip(colours.as_chunks::<3>().0) {
+            let is_white = colour.iter().all(|c| (c - share).abs() < 1e-6);
+            assert!(is_white, "{share}: {colour:?}");
+        }
+        assert!(shares.contains(&1.0) && shares.contains(&0.0));
+    }
+    // Without a sky it has no colour.
+    let black = classic.with_sky(None).unwrap();
+    assert!(renderer.render_rgb(&black).is_err());
 }

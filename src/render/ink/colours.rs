@@ -120,11 +120,10 @@ impl Colours {
 pub(in crate::render) struct SharedColours(OnceLock<Colours>);
 
 impl SharedColours {
-    /// The colours of a scene, where it has light or a sky and the form shows it.
+    /// The colours of a scene, where it shows any and the form does.
     pub(in crate::render) fn of(&self, scene: &Scene, form: Form) -> Option<&Colours> {
         let new = || Colours::new(scene.light(), scene.exposure(), scene.tone());
-        let is_shown = form.shows_light() && (scene.light().is_some() || scene.sky().is_some());
-        is_shown.then(|| self.0.get_or_init(new))
+        (scene.shows_colour() && form.shows_light()).then(|| self.0.get_or_init(new))
     }
 }
 
