@@ -84,6 +84,7 @@ pub mod output;
 mod quotation;
 pub mod render;
 pub mod scene;
+pub mod sky;
 pub mod table;
 
 pub use orbit::Ray;
