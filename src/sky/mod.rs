@@ -1,7 +1,7 @@
 //! The sky: what a ray that escapes sees.
 
 mod orientation;
-pub mod panorama;
+mod panorama;
 
 pub use orientation::{Orientation, direction, place};
 pub use panorama::Panorama;

@@ -91,7 +91,10 @@ mod tests {
         let direction = DVec3::new(0.1, -0.7, 0.3);
         assert_eq!(Orientation::default().to_sky(direction), direction);
         assert_eq!(Orientation::default().from_sky(direction), direction);
-        assert_eq!(Orientation::new([360.0, -360.0, 720.0]), Orientation::default());
+        assert_eq!(
+            Orientation::new([360.0, -360.0, 720.0]),
+            Orientation::default()
+        );
     }
 
     #[test]
