@@ -1,0 +1,185 @@
+//! A panorama at one of its sizes.
+
+use rayon::prelude::*;
+use wide::{f32x4, i32x4};
+
+/// A panorama at one of its sizes: linear light, three floats a texel, rows from the top.
+#[derive(Debug)]
+pub(super) struct MipLevel {
+    height: usize,
+    /// One float more than the texels have, so that four can be loaded from where any of them begins.
+    values: Vec<f32>,
+}
+
+/// Adding and subtracting it rounds a number below 2²² to the nearest integer.
+const ROUNDING: f32 = 12_582_912.0;
+
+impl MipLevel {
+    /// Returns the number of values that a level of this height keeps.
+    pub(super) fn length(height: usize) -> usize {
+        6 * height * height + 1
+    }
+
+    /// Takes the texels and one value more.
+    pub(super) fn new(height: usize, values: Vec<f32>) -> Self {
+        assert_eq!(values.len(), Self::length(height));
+        Self { height, values }
+    }
+
+    pub(super) fn height(&self) -> usize {
+        self.height
+    }
+
+    /// Returns the sum of the bilinear values at four places, which [`each_at`](Self::each_at) describes.
+    #[inline(always)]
+    pub(super) fn sum_at(&self, x: f32x4, y: f32x4) -> f32x4 {
+        let [a, b, c, d] = self.each_at::<4>(x, y);
+        (a + b) + (c + d)
+    }
+
+    /// Returns the bilinear values at the first N of four places in texels: (0, 0) is the centre of the first texel, y
+    /// grows downwards. Each is red, green, blue and a number without meaning.
+    ///
+    /// Columns wrap. A row beyond a pole comes back on the other side of the sky, half of the width further on. Places
+    /// beyond 2²² have no precision left; they and NaN give some number or NaN.
+    #[inline(always)]
+    pub(super) fn each_at<const N: usize>(&self, x: f32x4, y: f32x4) -> [f32x4; N] {
+        let (column, right) = cells(x);
+        let (row, down) = cells(y);
+        let (columns, rows) = (2 * self.height as i32, self.height as i32);
+        // Negative where a texel or its neighbours lie outside.
+        let inside =
+            column | row | (i32x4::splat(columns - 2) - column) | (i32x4::splat(rows - 2) - row);
+        let (right, down) = (right.to_array(), down.to_array());
+        let mut values = [f32x4::ZERO; N];
+        if inside.to_bitmask() == 0 {
+            let stride = 3 * columns as usize;
+            let starts = row * i32x4::splat(stride as i32) + (column + column + column);
+            for (i, value) in values.iter_mut().enumerate() {
+                let start = starts.to_array()[i] as u32 as usize;
+                let both = &self.values[start..start + stride + 7];
+                let (upper, lower) = (both.first_chunk::<7>(), both.last_chunk::<7>());
+                if let (Some(&[a, b, c, d, e, f, g]), Some(&[h, i1, j, k, l, m, n])) =
+                    (upper, lower)
+                {
+                    let texels = [[a, b, c, d], [d, e, f, g], [h, i1, j, k], [k, l, m, n]];
+                    *value = bilinear(texels, right[i], down[i]);
+                }
+            }
+        } else {
+            for (i, value) in values.iter_mut().enumerate() {
+                let texels = self.texels_outside(column.to_array()[i], row.to_array()[i]);
+                *value = bilinear(texels, right[i], down[i]);
+            }
+        }
+        values
+    }
+
+    /// Returns a texel, its right neighbour, and the two below them.
+    #[cold]
+    #[inline(never)]
+    fn texels_outside(&self, column: i32, row: i32) -> [[f32; 4]; 4] {
+        let (width, height) = (2 * self.height as i64, self.height as i64);
+        [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(right, down)| {
+            let mut column = i64::from(column) + right;
+            let mut row = (i64::from(row) + down).rem_euclid(2 * height);
+            if row >= height {
+                row = 2 * height - 1 - row;
+                column += height;
+            }
+            let start = (3 * (row * width + column.rem_euclid(width))) as usize;
+            [0, 1, 2, 3].map(|i| self.values[start + i])
+        })
+    }
+
+    /// Returns the next smaller level, of half the height, rounded down; none below a height of 1.
+    ///
+    /// A texel is the mean of the part of the picture that it covers. Where the height is odd, this part ends within
+    /// texels, and these count by their covered part. So each level has the picture's mean.
+    pub(super) fn halved(&self) -> Option<Self> {
+        let height = self.height / 2;
+        if height == 0 {
+            return None;
+        }
+        let stride = 6 * height;
+        let mut values = vec![0.0; Self::length(height)];
+        values[..stride * height]
+            .par_chunks_exact_mut(stride)
+            .enumerate()
+            .for_each(|(row, to)| {
+                if self.height.is_multiple_of(2) {
+                    self.mean_of_pairs(row, to);
+                } else {
+                    self.mean_of_parts(row, to);
+                }
+            });
+        Some(Self::new(height, values))
+    }
+
+    /// Computes a row of the next level where its texels cover 2 × 2 of this one.
+    fn mean_of_pairs(&self, row: usize, to: &mut [f32]) {
+        let stride = 6 * self.height;
+        let (upper, lower) = self.values[2 * row * stride..][..2 * stride].split_at(stride);
+        let pairs = upper.chunks_exact(6).zip(lower.chunks_exact(6));
+        for (to, (a, b)) in to.chunks_exact_mut(3).zip(pairs) {
+            for c in 0..3 {
+                to[c] = 0.25 * ((a[c] + a[c + 3]) + (b[c] + b[c + 3]));
+            }
+        }
+    }
+
+    /// Computes a row of the next level where its texels cover a little more than 2 × 2 of this one, 3 × 3 in part.
+    fn mean_of_parts(&self, row: usize, to: &mut [f32]) {
+        // In units of 1/n of this level's texels, n the next level's number of them, a new texel j begins at j N, and
+        // N = 2n + p is odd (rows, p = 1) or twice that (columns, p = 2).
+        let parts = |j: usize, n: usize, p: usize| {
+            let first = 2 * j + j * p / n;
+            let begin = (j * p) % n;
+            let all = 2 * n + p;
+            let (a, b) = (n - begin, n.min(all - (n - begin)));
+            let weights = [a, b, all - a - b].map(|part| part as f32 / all as f32);
+            (first, weights)
+        };
+        let n = self.height / 2;
+        let (first_row, down) = parts(row, n, 1);
+        for (column, to) in to.chunks_exact_mut(3).enumerate() {
+            let (first_column, right) = parts(column, 2 * n, 2);
+            for (c, to) in to.iter_mut().enumerate() {
+                let mut sum = 0.0;
+                for (j, &down) in down.iter().enumerate() {
+                    for (i, &right) in right.iter().enumerate() {
+                        // A part of size 0 may lie outside.
+                        if down > 0.0 && right > 0.0 {
+                            let texel = (first_row + j) * 2 * self.height + first_column + i;
+                            sum += down * right * self.values[3 * texel + c];
+                        }
+                    }
+                }
+                *to = sum;
+            }
+        }
+    }
+}
+
+/// Returns the integers below positions, and the distances from these, in [0, 1]. For an integer this may also be the
+/// one below it and a distance of 1.
+#[inline(always)]
+fn cells(position: f32x4) -> (i32x4, f32x4) {
+    let rounding = f32x4::splat(ROUNDING);
+    let shifted = (position - f32x4::splat(0.5)) + rounding;
+    let below: i32x4 = bytemuck::cast(shifted);
+    (
+        below - i32x4::splat(ROUNDING.to_bits() as i32),
+        position - (shifted - rounding),
+    )
+}
+
+/// Returns the value between a texel, its right neighbour, and the two below them.
+#[inline(always)]
+fn bilinear(texels: [[f32; 4]; 4], right: f32, down: f32) -> f32x4 {
+    let [a, b, c, d] = texels.map(f32x4::new);
+    let (right, down) = (f32x4::splat(right), f32x4::splat(down));
+    let upper = a + (b - a) * right;
+    let lower = c + (d - c) * right;
+    upper + (lower - upper) * down
+}
