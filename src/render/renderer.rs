@@ -1,5 +1,6 @@
 //! The renderer: a scene in, its pixels out.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use image::{GrayImage, RgbImage};
@@ -14,6 +15,7 @@ use super::sky::{FrameSky, SharedSky, SkyAtRadius};
 use crate::isoradial::{CurveSpec, Isoradials, RadiusMap};
 use crate::orbit::path::SweptAngles;
 use crate::scene::{Animation, LayerSet, Light, Scene, Sky, Stars, Tone, View};
+use crate::sky::SkySource;
 use crate::table::{Lookup, Table};
 
 /// Draws scenes.
@@ -77,6 +79,13 @@ impl<A: SweptAngles> Renderer<A> {
             colours: SharedColours::default(),
             workspace: Workspace::default(),
         }
+    }
+
+    /// Takes what a sky holds from memory instead of from the files that its scenes name, for all scenes with this sky.
+    #[must_use]
+    pub fn with_sky(mut self, sky: Sky, source: Arc<SkySource>) -> Self {
+        self.source = (Some(sky), SharedSky::of(source));
+        self
     }
 
     /// Returns a scene's mask, drawn on all threads of the current rayon pool: where the disk is.

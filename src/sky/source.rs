@@ -44,6 +44,16 @@ impl SkySource {
         })
     }
 
+    /// A sky that is in memory already.
+    pub fn new(panorama: Option<Panorama>, stars: Option<StarField>, grid: Option<f64>) -> Self {
+        Self {
+            panorama,
+            stars,
+            bad_rows: None,
+            grid,
+        }
+    }
+
     /// Returns the panorama.
     pub fn panorama(&self) -> Option<&Panorama> {
         self.panorama.as_ref()

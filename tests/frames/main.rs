@@ -39,6 +39,7 @@ mod outline;
 mod photon_rings;
 mod renderer;
 mod sky_directions;
+mod sky_panorama;
 mod symmetry;
 mod without_disk;
 mod zoomed_edges;

@@ -1,5 +1,7 @@
 //! What fills the sky: a panorama, and a grid before it.
 
+use wide::f32x4;
+
 use super::shader::SkyShader;
 use crate::sky::{Grid, Panorama, SkySource};
 
@@ -33,12 +35,42 @@ impl<'a> Backdrop<'a> {
     }
 
     /// Returns the mean light over a parallelogram about a place.
-    #[inline]
     pub(super) fn mean(&self, place: [f32; 2], along_x: [f32; 2], along_y: [f32; 2]) -> [f32; 3] {
-        let light = match self.panorama {
-            Some(panorama) => panorama.mean(place, along_x, along_y),
-            None => [0.0; 3],
-        };
+        let light = self
+            .panorama
+            .map_or([0.0; 3], |panorama| panorama.mean(place, along_x, along_y));
+        self.with_grid(light, place, along_x, along_y)
+    }
+
+    /// Returns four means.
+    #[inline]
+    pub(super) fn means(
+        &self,
+        place: [f32x4; 2],
+        along_x: [f32x4; 2],
+        along_y: [f32x4; 2],
+    ) -> [[f32; 3]; 4] {
+        let mut means = self.panorama.map_or([[0.0; 3]; 4], |panorama| {
+            panorama.means(place, along_x, along_y)
+        });
+        if self.grid.is_some() {
+            let pairs = [place, along_x, along_y].map(|pair| pair.map(f32x4::to_array));
+            for (i, mean) in means.iter_mut().enumerate() {
+                let [place, along_x, along_y] = pairs.map(|pair| pair.map(|lanes| lanes[i]));
+                *mean = self.with_grid(*mean, place, along_x, along_y);
+            }
+        }
+        means
+    }
+
+    /// Draws the grid over light.
+    fn with_grid(
+        &self,
+        light: [f32; 3],
+        place: [f32; 2],
+        along_x: [f32; 2],
+        along_y: [f32; 2],
+    ) -> [f32; 3] {
         let Some(grid) = &self.grid else {
             return light;
         };

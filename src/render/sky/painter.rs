@@ -2,6 +2,8 @@
 
 use std::sync::LazyLock;
 
+use wide::f32x4;
+
 use super::backdrop::Backdrop;
 use super::shader::{SkyShader, outward, place_change};
 use crate::render::patch::{Misfit, Patch, PatchFit};
@@ -127,8 +129,11 @@ struct SkyTiles<'p, 'a, 'm> {
     light: &'m mut [[f32; 3]],
 }
 
-/// A row of places: one on either side more than a tile has columns.
-type Places = [[f32; TILE.0 + 2]; 2];
+/// Pixels that are filtered side by side.
+const LANES: usize = 4;
+
+/// A row of places: one on either side more than a tile has columns, and those of unused lanes.
+type Places = [[f32; TILE.0 + 2 + LANES]; 2];
 
 impl Tiled<NODES> for SkyTiles<'_, '_, '_> {
     fn fit(&mut self, bounds: Rectangle, patch: &mut Patch<NODES>) -> Result<(), Misfit> {
@@ -170,7 +175,7 @@ impl Tiled<NODES> for SkyTiles<'_, '_, '_> {
             }
         };
         let top = (self.top + bounds.rows.0) as f64;
-        let mut places: [Places; 3] = [[[0.0; TILE.0 + 2]; 2]; 3];
+        let mut places: [Places; 3] = [[[0.5; TILE.0 + 2 + LANES]; 2]; 3];
         fill(top - 1.0, &mut places[0]);
         fill(top, &mut places[1]);
         let mut runs = bounds.clip(runs).peekable();
@@ -179,12 +184,19 @@ impl Tiled<NODES> for SkyTiles<'_, '_, '_> {
             let [above, here, below] = &places;
             while let Some((_, (from, to))) = runs.next_if(|(of_row, _)| *of_row == row) {
                 let pixels = &mut self.light[row * self.width..][from..to];
-                for (i, pixel) in pixels.iter_mut().enumerate() {
-                    let i = from + i - first + 1;
-                    let place = [here[0][i], here[1][i]];
-                    let along_x = [0, 1].map(|q| 0.5 * (here[q][i + 1] - here[q][i - 1]));
-                    let along_y = [0, 1].map(|q| 0.5 * (below[q][i] - above[q][i]));
-                    *pixel = self.painter.backdrop.mean(place, along_x, along_y);
+                for (group, pixels) in pixels.chunks_mut(LANES).enumerate() {
+                    // In the last group the lanes beyond the run are not used.
+                    let i = from + LANES * group - first + 1;
+                    let lanes = |row: &Places, q: usize, i: usize| {
+                        f32x4::new(core::array::from_fn(|lane| row[q][i + lane]))
+                    };
+                    let place = [0, 1].map(|q| lanes(here, q, i));
+                    let half = f32x4::splat(0.5);
+                    let along_x =
+                        [0, 1].map(|q| half * (lanes(here, q, i + 1) - lanes(here, q, i - 1)));
+                    let along_y = [0, 1].map(|q| half * (lanes(below, q, i) - lanes(above, q, i)));
+                    let means = self.painter.backdrop.means(place, along_x, along_y);
+                    pixels.copy_from_slice(&means[..pixels.len()]);
                 }
             }
             places.rotate_left(1);

@@ -1,0 +1,166 @@
+//! Panoramas behind the hole, against 64 × 64 rays for each pixel.
+
+use std::sync::Arc;
+
+use darkness::Renderer;
+use darkness::isoradial::EscapeCurve;
+use darkness::orbit::exact::Exact;
+use darkness::scene::{Camera, ImageSize, Layer, LayerSet, Scene, Sky, SkyFile, View};
+use darkness::sky::{Panorama, SkySource, place};
+
+use crate::tables::table;
+
+/// Rays a side of a pixel.
+const RAYS: u32 = 64;
+
+/// A repeatable sequence of numbers from 0 to 1 (SplitMix64).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f32 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 40) as f32 / (1 << 24) as f32
+    }
+}
+
+/// 1/f noise from 0 to 1: as much of it in each octave, down to single texels.
+fn noise(height: usize) -> Panorama {
+    let width = 2 * height;
+    let mut random = Random(7);
+    let mut texels = vec![0.0_f32; 3 * width * height];
+    let mut cell = height / 2;
+    while cell >= 1 {
+        let (columns, rows) = (width / cell, height / cell + 2);
+        let lattice: Vec<[f32; 3]> = (0..columns * rows)
+            .map(|_| [random.next(), random.next(), random.next()])
+            .collect();
+        for y in 0..height {
+            for x in 0..width {
+                let (cx, cy) = (x / cell, y / cell);
+                let (fx, fy) = (
+                    (x % cell) as f32 / cell as f32,
+                    (y % cell) as f32 / cell as f32,
+                );
+                for c in 0..3 {
+                    let at =
+                        |i: usize, j: usize| lattice[(cy + j) * columns + (cx + i) % columns][c];
+                    let top = at(0, 0) + fx * (at(1, 0) - at(0, 0));
+                    let bottom = at(0, 1) + fx * (at(1, 1) - at(0, 1));
+                    texels[3 * (y * width + x) + c] += top + fy * (bottom - top);
+                }
+            }
+        }
+        cell /= 2;
+    }
+    let (least, most) = texels
+        .iter()
+        .fold((f32::MAX, f32::MIN), |(a, b), &t| (a.min(t), b.max(t)));
+    for texel in &mut texels {
+        *texel = (*texel - least) / (most - least);
+    }
+    Panorama::from_linear(height, texels)
+}
+
+fn sky() -> Sky {
+    Sky {
+        panorama: Some(SkyFile::new("of the test")),
+        ..Sky::default()
+    }
+}
+
+/// The scene of a camera without a disk.
+fn scene(position: [f64; 3], focus: [f64; 3], fov: f64, (width, height): (u32, u32)) -> Scene {
+    let camera = Camera {
+        focus: focus.into(),
+        up: [1.0, 0.3, 0.2].into(),
+        ..Camera::at(position, fov)
+    };
+    Scene::without_disk(camera, sky(), ImageSize { width, height }).unwrap()
+}
+
+/// The linear light of a scene.
+fn light(scene: &Scene, source: &Arc<SkySource>) -> Vec<[f32; 3]> {
+    let mut renderer = Renderer::new(table("standard")).with_sky(sky(), Arc::clone(source));
+    let layers = LayerSet::default().with(Layer::Colour);
+    let planes = renderer.render_layers(scene, layers).unwrap();
+    planes[0].values.as_chunks::<3>().0.to_vec()
+}
+
+/// The mean of many rays through a pixel.
+fn of_rays(view: &View, curve: &EscapeCurve, panorama: &Panorama, (i, j): (u32, u32)) -> [f64; 3] {
+    let [p, a, b] = view.axes();
+    let mut sum = [0.0; 3];
+    let offset = |k: u32| (f64::from(k) + 0.5) / f64::from(RAYS);
+    for row in 0..RAYS {
+        for column in 0..RAYS {
+            let (x, y) = (f64::from(i) + offset(column), f64::from(j) + offset(row));
+            let ray = view.ray_at(view.x_at(x), view.y_at(y));
+            let s = ray.transverse();
+            let Some(escape) = curve.at(ray.z, s) else {
+                continue;
+            };
+            let direction =
+                p * escape.angle.cos() + (a * ray.ta + b * ray.tb) * (escape.angle.sin() / s);
+            let (u, v) = place(direction);
+            let texel = panorama.mean([u as f32, v as f32], [0.0; 2], [0.0; 2]);
+            for (sum, c) in sum.iter_mut().zip(texel) {
+                *sum += f64::from(c);
+            }
+        }
+    }
+    sum.map(|c| c / f64::from(RAYS * RAYS))
+}
+
+#[test]
+fn a_pixel_is_the_mean_of_many_rays() {
+    let height = 1024;
+    let source = Arc::new(SkySource::new(Some(noise(height)), None, None));
+    let panorama = source.panorama().unwrap();
+    for (name, scene) in [
+        ("whole", scene([30.0, 0.0, 4.0], [0.0; 3], 60.0, (96, 54))),
+        ("ring", scene([30.0, 0.0, 4.0], [0.0; 3], 16.0, (96, 54))),
+        (
+            "edge",
+            scene([30.0, 0.0, 4.0], [0.0, 2.6, 0.0], 3.0, (96, 54)),
+        ),
+        ("near", scene([2.0, 1.0, 0.3], [0.0; 3], 120.0, (96, 54))),
+        (
+            "away",
+            scene([2.0, 1.0, 0.3], [4.0, 2.0, 0.6], 120.0, (96, 54)),
+        ),
+        (
+            "inside",
+            scene([1.2, 0.1, 0.3], [4.0, 2.0, 0.6], 150.0, (96, 54)),
+        ),
+        ("far", scene([1e6, 0.0, 1e5], [0.0; 3], 1e-3, (96, 54))),
+        (
+            "pole",
+            scene([30.0, 0.0, 4.0], [30.0, 0.0, 14.0], 40.0, (96, 54)),
+        ),
+    ] {
+        let view = View::new(&scene);
+        let curve = EscapeCurve::new(view.u0(), view.slope_scale(), &Exact);
+        let found = light(&scene, &source);
+        let (mut sum, mut worst, mut count) = (0.0, (0.0_f64, (0, 0)), 0.0);
+        for j in (0..54).step_by(3) {
+            for i in (0..96).step_by(3) {
+                let truth = of_rays(&view, &curve, panorama, (i, j));
+                let pixel = found[(j * 96 + i) as usize];
+                for (found, truth) in pixel.iter().zip(truth) {
+                    let off = f64::from(*found) - truth;
+                    sum += off * off;
+                    count += 1.0;
+                    if off.abs() > worst.0 {
+                        worst = (off.abs(), (i, j));
+                    }
+                }
+            }
+        }
+        let rms = f64::sqrt(sum / count);
+        println!("{name}: rms {rms:.5}, worst {worst:?}");
+        assert!(rms <= 0.01, "{name}: {rms}");
+    }
+}
