@@ -11,7 +11,9 @@ use std::time::{Duration, Instant};
 use darkness::scene::{Animation, Scene};
 use tempfile::tempdir;
 
-use crate::harness::{PROGRAM, darkness, done, fails, files, listing, refused, with_animation};
+use crate::harness::{
+    PROGRAM, darkness, done, fails, files, listing, printed, refused, with_animation,
+};
 use crate::tools;
 
 #[test]
@@ -100,6 +102,37 @@ fn what_a_format_cannot_hold_is_refused_with_what_to_change() {
         );
     }
     assert_eq!(listing(here), ["data.toml", "wide.toml"]);
+}
+
+/// A sky is in colour, and has an exposure, whatever the disk.
+#[test]
+fn a_sky_is_no_mask() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    write_sky(here);
+    let sky = ["render", "sky.toml"];
+    let grey = ["--format", "y4m-gray", "-o", "f.y4m"];
+    refused(
+        here,
+        &[&sky[..], &grey].concat(),
+        2,
+        &["hold masks", "[sky]"],
+    );
+    printed(
+        here,
+        &[&sky[..], &["--exposure", "1", "--dry-run"]].concat(),
+    );
+    let words = ["--exposure changes light", "a [sky]"];
+    refused(here, &["render", "orbit", "--exposure", "1"], 2, &words);
+    assert_eq!(listing(here), ["sky.toml"]);
+}
+
+/// Writes `sky.toml`: an animation of a black sky without a disk.
+fn write_sky(folder: &Path) {
+    let scene = Animation::load("orbit").unwrap().to_toml();
+    let (camera, rest) = scene.split_once("[disk]").unwrap();
+    let image = &rest[rest.find("[image]").unwrap()..];
+    fs::write(folder.join("sky.toml"), format!("{camera}[sky]\n{image}")).unwrap();
 }
 
 #[test]

@@ -60,8 +60,8 @@ pub(in crate::cli) struct RenderArgs {
     #[arg(long, value_name = "true|false", action = clap::ArgAction::Set)]
     pub(super) antialias: Option<bool>,
     /// The layers of a .exr or .npz file, with commas: coverage, order, radius, azimuth, redshift, emission_cosine,
-    /// temperature, colour, sky (the direction in which a ray leaves), sky_uv (its place in a panorama) [default: the
-    /// scene's; else coverage, and colour where there is light or a sky]
+    /// temperature, colour, sky (where a pixel's ray leaves to), sky_uv (that place in a panorama) [default: the scene's;
+    /// else coverage, and colour where there is light or a sky]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(super) layers: Option<Vec<String>>,
     /// The exposure of light in pictures and films, in stops: each doubles it [default: the scene's]

@@ -146,13 +146,24 @@ fn text(
             ),
         );
     }
-    let light = if map.is_some() {
-        "spin, thickness and sky are not modelled"
-    } else {
-        "no map of the radius, since the picture shows only where the disk is; spin, thickness and sky are not modelled"
-    };
-    line("not needed", format!("a ray for each pixel; {light}"));
+    line("not needed", not_needed(scene, map.is_some()));
     text
+}
+
+/// What the picture does without.
+fn not_needed(scene: &Scene, has_map: bool) -> String {
+    let map = match (has_map, scene.disk()) {
+        (true, _) => "",
+        (false, Some(_)) => {
+            "no map of the radius, since the picture shows only where the disk is; "
+        }
+        (false, None) => "no map of the radius, since there is no disk; ",
+    };
+    let effects = match scene.sky() {
+        Some(_) => "spin and thickness",
+        None => "spin, thickness and sky",
+    };
+    format!("a ray for each pixel; {map}{effects} are not modelled")
 }
 
 /// How far a table moves the edges, and whether that is good enough.

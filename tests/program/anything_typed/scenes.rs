@@ -13,7 +13,7 @@ use crate::harness::{files, with_animation};
 const SCENES: u32 = 1000;
 
 /// A scene's keys: the section, the key, and valid values.
-const KEYS: [(&str, &str, &[&str]); 24] = [
+const KEYS: [(&str, &str, &[&str]); 27] = [
     ("camera", "position", &["[20, 0, 5]", "[0.0, 1.2, 0.1]"]),
     ("camera", "focus", &["[0, 0, 0]", "[1, 2, 3]"]),
     ("camera", "up", &["[0, 0.1, 1]"]),
@@ -23,6 +23,9 @@ const KEYS: [(&str, &str, &[&str]); 24] = [
     ("disk", "normal", &["[0, 0, 1]", "[1e300, 1, 0]"]),
     ("disk.light", "model", &["\"blackbody\""]),
     ("disk.light", "temperature", &["7000", "1e9"]),
+    ("sky", "grid", &["15", "7.5"]),
+    ("sky", "rotation", &["[0, 90, -7.5]"]),
+    ("sky", "stars", &["{ count = 5, seed = 1 }"]),
     ("image", "width", &["24", "1"]),
     ("image", "height", &["16", "1"]),
     ("image", "antialias", &["true", "false"]),

@@ -103,6 +103,13 @@ fn a_picture_takes_the_smallest_table_that_is_good_enough() {
             assert!(explained.contains(words), "no {words} in:\n{explained}");
         }
     }
+    let explained = printed(here, &["render", "--explain", "--size", SMALL, "grid"]);
+    for words in [
+        "none: the scene has no disk",
+        "since there is no disk; spin and thickness are",
+    ] {
+        assert!(explained.contains(words), "no {words} in:\n{explained}");
+    }
     let finest = ["render", "--size", SMALL, "--tolerance", "1e-10"];
     let (_, stderr) = done(here, &finest);
     assert!(stderr.contains("exact curves"), "{stderr}");
