@@ -2,6 +2,8 @@
 
 /// At most this much linear light is encoded in proportion to itself.
 const LINEAR_UP_TO: f64 = 0.0031308;
+/// The sRGB value up to which linear light is in proportion.
+const LINEAR_CODES_UP_TO: f64 = 0.04045;
 
 /// Returns the sRGB value of linear light `c`; both are in [0, 1], and what lies outside is clipped. NaN gives 0.
 ///
@@ -11,6 +13,15 @@ pub fn encode(c: f64) -> f64 {
         power_law(c.min(1.0))
     } else {
         12.92 * c.max(0.0)
+    }
+}
+
+/// Returns the linear light of an sRGB value, as [`encode`] does the reverse; what lies outside [0, 1] is clipped.
+pub fn decode(value: f64) -> f64 {
+    if value > LINEAR_CODES_UP_TO {
+        libm::pow((value.min(1.0) + 0.055) / 1.055, 2.4)
+    } else {
+        value.max(0.0) / 12.92
     }
 }
 
@@ -90,6 +101,20 @@ mod tests {
         // A linear value of 0.2140 is the middle grey of sRGB.
         assert!((encode(0.214041140482) - 0.5).abs() < 1e-10);
         assert_eq!(encode(f64::NAN), 0.0);
+    }
+
+    #[test]
+    fn decoded_and_encoded_again() {
+        assert_eq!((decode(0.0), decode(1.0)), (0.0, 1.0));
+        assert_eq!(
+            (decode(-0.5), decode(2.0), decode(f64::NAN)),
+            (0.0, 1.0, 0.0)
+        );
+        for code in 0..=u16::MAX {
+            let value = f64::from(code) / 65535.0;
+            // The two branches of the standard's rounded numbers meet within 3e-8.
+            assert!((encode(decode(value)) - value).abs() < 1e-7);
+        }
     }
 
     #[test]
