@@ -2,6 +2,7 @@
 
 mod filter;
 mod mip_level;
+mod open;
 
 use mip_level::MipLevel;
 
@@ -21,7 +22,7 @@ impl Panorama {
     /// # Panics
     /// If `texels` has not `6 height²` floats, or the height is 0 or above 8192.
     pub fn from_linear(height: usize, mut texels: Vec<f32>) -> Self {
-        assert!((1..=8192).contains(&height));
+        assert!((1..=open::MOST_ROWS).contains(&height));
         texels.push(0.0);
         Self::with_levels(MipLevel::new(height, texels))
     }
@@ -51,11 +52,16 @@ impl Panorama {
 
     /// Returns the memory that all sizes take, in bytes.
     pub fn bytes(&self) -> u64 {
-        let floats = self
-            .levels
-            .iter()
-            .map(|level| MipLevel::length(level.height()));
-        4 * floats.sum::<usize>() as u64
+        Self::bytes_of(self.height())
+    }
+
+    /// Returns the memory that all sizes of a panorama of this height take, in bytes.
+    fn bytes_of(height: usize) -> u64 {
+        let heights = std::iter::successors(Some(height), |height| Some(height / 2));
+        let floats = heights
+            .take_while(|&height| height > 0)
+            .map(MipLevel::length);
+        (size_of::<f32>() * floats.sum::<usize>()) as u64
     }
 
     /// Returns the number of sizes, the first included.
