@@ -64,7 +64,7 @@
 //! | [`orbit`] | [`Ray`] and what happens to it: by elliptic integrals, by integration, by the table |
 //! | [`isoradial`] | the curves in the picture at which the disk begins and ends, and the outline they make |
 //! | [`light`] | redshift, flux, black bodies, colour: what a ray that meets the disk shows |
-//! | [`sky`] | what is behind the hole: stars from a catalogue or made up, and a grid |
+//! | [`sky`] | what is behind the hole: a panorama, stars, and a grid |
 //! | [`render`] | [`Renderer`]: frames and batches of frames, as masks, in colour or as layers of data |
 //! | `chart` | speed against accuracy of every method, measured and drawn (feature `chart`) |
 //! | `cli` | the program `darkness` (feature `cli`, on by default) |

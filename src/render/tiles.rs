@@ -28,6 +28,12 @@ pub(super) trait Tiled<const N: usize> {
         true
     }
 
+    /// Whether nothing is to be painted in a rectangle, as far as that is told at once.
+    fn is_empty(&self, bounds: Rectangle) -> bool {
+        let _ = bounds;
+        false
+    }
+
     /// Fits a patch to the pixels of a rectangle.
     ///
     /// # Errors
@@ -75,7 +81,7 @@ fn paint_tile<const N: usize>(
     patch: &mut Patch<N>,
 ) {
     let (count, bounds) = tile.shrunk(runs);
-    if count == 0 {
+    if count == 0 || painter.is_empty(bounds) {
         return;
     }
     let needs_patch = painter.needs_patch();

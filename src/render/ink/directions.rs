@@ -95,6 +95,10 @@ fn wrapped(u: f32) -> f32 {
 }
 
 impl Tiled<NODES> for DirectionTiles<'_, '_, '_> {
+    fn is_empty(&self, bounds: Rectangle) -> bool {
+        self.sky.is_in_shadow(bounds, self.top)
+    }
+
     fn fit(&mut self, bounds: Rectangle, patch: &mut Patch<NODES>) -> Result<(), Misfit> {
         let sky = self.sky;
         let mut first = None;

@@ -17,13 +17,13 @@ const NODES: usize = 7;
 static FIT: LazyLock<PatchFit<NODES>> = LazyLock::new(PatchFit::new);
 
 /// Pixels whose rays' swept angles differ by more than this are drawn one by one: the footprint bends within them.
-const BENT: f64 = 0.125;
+const BENT: f64 = 0.25;
 
 /// A pixel is cut into this many parts for each radian by which the swept angle changes within it.
-const PARTS_PER_RADIAN: f64 = 4.0;
+const PARTS_PER_RADIAN: f64 = 3.0;
 
 /// A pixel is cut into at most so many parts along one axis.
-const MOST_PARTS: f64 = 8.0;
+const MOST_PARTS: f64 = 6.0;
 
 /// A place may be off by this share of a detail, and by this share of a footprint.
 const OF_DETAIL: f64 = 0.004;
@@ -136,6 +136,10 @@ const LANES: usize = 4;
 type Places = [[f32; TILE.0 + 2 + LANES]; 2];
 
 impl Tiled<NODES> for SkyTiles<'_, '_, '_> {
+    fn is_empty(&self, bounds: Rectangle) -> bool {
+        self.painter.shader.is_in_shadow(bounds, self.top)
+    }
+
     fn fit(&mut self, bounds: Rectangle, patch: &mut Patch<NODES>) -> Result<(), Misfit> {
         let shader = &self.painter.shader;
         let corners = bounds.centres(self.top);

@@ -16,6 +16,7 @@ use core::f64::consts::{PI, TAU};
 use glam::DVec3;
 
 use crate::isoradial::{Escape, EscapeCurve};
+use crate::render::tiles::Rectangle;
 use crate::scene::{Affine, PixelRay, Scene, View};
 use crate::sky::Orientation;
 
@@ -131,6 +132,19 @@ impl<'a> SkyShader<'a> {
             along_x: change(|affine| affine.per_x),
             along_y: change(|affine| -affine.per_y),
         }
+    }
+
+    /// Whether a rectangle of pixels lies in the hole's shadow, as far as its middle tells: over a distance in the
+    /// picture's plane `z − κ_c s` changes by at most `√(1 + κ_c²)` times that.
+    pub(in crate::render) fn is_in_shadow(&self, bounds: Rectangle, top: usize) -> bool {
+        let ((left, upper), (right, lower)) = bounds.centres(top);
+        let (width, height) = (right - left + 1.0, lower - upper + 1.0);
+        let reach = 0.5 * (width * width + height * height).sqrt() * self.view.pixel_side();
+        let (x, y) = (0.5 * (left + right), 0.5 * (upper + lower));
+        let ray = self.view.ray_at(self.view.x_at(x), self.view.y_at(y));
+        let critical = self.curve.critical();
+        let excess = ray.z - critical * ray.transverse();
+        excess > (1.0 + critical * critical).sqrt() * reach
     }
 
     /// Returns how much the angle swept changes from pixel to pixel, at most: `|dΦ/dψ| |∇ψ|`. Beside the shadow this is
