@@ -126,7 +126,7 @@ mod tests {
         // Longitude grows to the left.
         assert_eq!(place(DVec3::Y), (0.25, 0.5));
         assert_eq!(place(-DVec3::Y), (0.75, 0.5));
-        assert_eq!(place(-DVec3::X), (0.0, 0.5));
+        assert_eq!(place(DVec3::new(-1.0, 0.0, 0.0)), (0.0, 0.5));
         assert_eq!(place(DVec3::Z).1, 1.0);
         assert_eq!(place(-DVec3::Z).1, 0.0);
         for (u, v) in [(0.1, 0.2), (0.9, 0.999_999), (0.5, 1e-9)] {

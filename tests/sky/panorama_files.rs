@@ -28,9 +28,7 @@ fn texel(path: &Path, exposure: f64, column: usize, row: usize) -> [f32; 3] {
 fn problem(path: &Path, max_bytes: u64) -> (PanoramaProblem, String) {
     let error = Panorama::open(path, 0.0, max_bytes).expect_err("no panorama");
     let sentence = error.to_string();
-    let SkyError::Panorama { problem, .. } = error else {
-        panic!("{sentence}")
-    };
+    let SkyError::Panorama { problem, .. } = error;
     assert!(
         sentence.starts_with(&format!("panorama {}: ", path.display())),
         "{sentence}"
@@ -110,21 +108,18 @@ fn jpeg_is_srgb() {
 fn radiance_is_linear() {
     let folder = folder();
     let path = folder.path().join("sky.hdr");
-    let pixels: Vec<Rgb<f32>> = (0..16_u8)
-        .map(|i| Rgb([f32::from(i), 0.5, 1000.0]))
+    let pixels: Vec<Rgb<f32>> = (0..8_u8)
+        .map(|i| Rgb([10.0 * f32::from(i), 0.5, 100.0]))
         .collect();
-    // All bytes of its four channels have the exponent of the largest one.
     let file = fs::File::create(&path).expect("created");
     HdrEncoder::new(file)
-        .encode(&pixels, 16, 1)
-        .expect_err("a panorama of 16 × 1 is none")
-        .to_string();
-    let file = fs::File::create(&path).expect("created");
-    HdrEncoder::new(file)
-        .encode(&pixels[..8], 4, 2)
+        .encode(&pixels, 4, 2)
         .expect("encoded");
     let [red, green, blue] = texel(&path, -1.0, 2, 1);
-    assert!((red - 3.0).abs() <= 2.0 && (green - 0.25).abs() <= 2.0 && (blue - 500.0).abs() <= 2.0);
+    // The three share an exponent: they are multiples of a 256th of 128.
+    assert!(
+        (red - 30.0).abs() <= 0.25 && (green - 0.25).abs() <= 0.25 && (blue - 50.0).abs() <= 0.25
+    );
 }
 
 /// Writes an `OpenEXR` file of 4 × 2 pixels, with half floats where `half`, with alpha where `alpha`.
@@ -295,15 +290,15 @@ fn damaged_files_never_panic() {
     }
 }
 
-/// A PNG's first bytes, with a size and the checksum that goes with it.
+/// A PNG's first bytes, with a size and the checksum that goes with it; numbers are big-endian.
 fn png_header(width: u32, height: u32) -> Vec<u8> {
     let mut chunk = b"IHDR".to_vec();
-    chunk.extend(width.to_be_bytes());
-    chunk.extend(height.to_be_bytes());
+    chunk.extend(width.to_le_bytes().iter().rev());
+    chunk.extend(height.to_le_bytes().iter().rev());
     chunk.extend([8, 2, 0, 0, 0]);
     let mut bytes = b"\x89PNG\r\n\x1a\n\0\0\0\x0d".to_vec();
     bytes.extend(&chunk);
-    bytes.extend(crc32fast::hash(&chunk).to_be_bytes());
+    bytes.extend(crc32fast::hash(&chunk).to_le_bytes().iter().rev());
     bytes.extend(b"\0\0\0\x10IDAT");
     bytes.extend([0; 64]);
     bytes

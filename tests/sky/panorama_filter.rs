@@ -102,7 +102,7 @@ fn rms(errors: &[f64]) -> f64 {
 fn near_the_exact_mean() {
     let noise = Noise::new();
     let mut random = Random(1);
-    // Anywhere; across ±180°; over the poles. Measured: ANYWHERE, SEAM and POLES.
+    // Measured: 0.0043, 0.0043 and 0.0049.
     for (where_to, most) in [
         ("anywhere", 0.007),
         ("at ±180°", 0.007),
@@ -121,7 +121,6 @@ fn near_the_exact_mean() {
             })
             .collect();
         let rms = rms(&errors);
-        println!("{where_to}: {rms:.5}");
         assert!(rms < most, "{where_to}: {rms}");
     }
 }
@@ -184,29 +183,43 @@ fn no_seam_where_longitude_wraps_or_at_the_poles() {
 }
 
 #[test]
-fn no_jumps_where_taps_or_levels_change() {
+fn no_seam_where_taps_or_levels_change() {
     let noise = Noise::new();
     let mut random = Random(5);
-    let mut jumps = Vec::new();
-    for _ in 0..60 {
-        let place = [random.number(), random.number()];
-        let turns = [0, 1].map(|_| 7.0 * random.number());
-        let aspect = random.by_octaves(1.0, 20.0);
-        let mut last = None;
+    for aspect in [1.0_f64, 1.3, 3.0, 12.0] {
+        let places: Vec<[f64; 4]> = (0..1000)
+            .map(|_| [1.0, 1.0, 7.0, 7.0].map(|most| most * random.number()))
+            .collect();
+        let mut last: Option<Vec<f64>> = None;
         // Larger by 1 % at a time.
-        for i in 0..420 {
+        for i in 0..320 {
             let size = 0.6 * libm::pow(1.01, f64::from(i));
-            let footprint =
-                Footprint::new(place, [size * aspect.sqrt(), size / aspect.sqrt()], turns);
-            let mean = f64::from(footprint.mean_of(&noise.panorama)[0]);
-            jumps.extend(last.map(|last: f64| (mean - last).abs()));
-            last = Some(mean);
+            let lengths = [size * aspect.sqrt(), size / aspect.sqrt()];
+            let mean = |&[u, v, turn, turn_again]: &[f64; 4]| {
+                let footprint = Footprint::new([u, v], lengths, [turn, turn_again]);
+                f64::from(footprint.mean_of(&noise.panorama)[0])
+            };
+            let means: Vec<f64> = places.iter().map(mean).collect();
+            if let Some(last) = last {
+                let changes: Vec<f64> = means.iter().zip(&last).map(|(a, b)| a - b).collect();
+                // Measured: up to 0.0168, where a square changes its level; at most steps 0.0006, by the size itself.
+                assert!(rms(&changes) < 0.02, "{aspect} {size}: {}", rms(&changes));
+                // Nor does the contrast change, by which a picture would show a line. Measured: up to 1.8 %.
+                let contrast = deviation(&means) / deviation(&last);
+                assert!(
+                    (contrast - 1.0).abs() < 0.025,
+                    "{aspect} {size}: {contrast}"
+                );
+            }
+            last = Some(means);
         }
     }
-    let worst = jumps.iter().copied().fold(0.0, f64::max);
-    println!("worst {worst:.4}, rms {:.5}", rms(&jumps));
-    // Measured: WORST.
-    assert!(worst < 0.02, "{worst}");
+}
+
+/// Returns the standard deviation.
+fn deviation(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    rms(&values.iter().map(|value| value - mean).collect::<Vec<_>>())
 }
 
 #[test]
@@ -250,7 +263,7 @@ fn any_numbers_give_some_colour() {
         for y in odd {
             for z in odd {
                 panorama.mean([x, y], [y, z], [z, x]);
-                let mean = panorama.mean([0.5, 0.5], [x.min(1e4).max(-1e4), 0.1], [0.0, 0.2]);
+                let mean = panorama.mean([0.5, 0.5], [x.clamp(-1e4, 1e4), 0.1], [0.0, 0.2]);
                 assert!(x.is_nan() || mean.iter().all(|c| (c - 1.0).abs() < 1e-5));
             }
         }

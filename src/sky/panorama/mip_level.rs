@@ -58,13 +58,8 @@ impl MipLevel {
             for (i, value) in values.iter_mut().enumerate() {
                 let start = starts.to_array()[i] as u32 as usize;
                 let both = &self.values[start..start + stride + 7];
-                let (upper, lower) = (both.first_chunk::<7>(), both.last_chunk::<7>());
-                if let (Some(&[a, b, c, d, e, f, g]), Some(&[h, i1, j, k, l, m, n])) =
-                    (upper, lower)
-                {
-                    let texels = [[a, b, c, d], [d, e, f, g], [h, i1, j, k], [k, l, m, n]];
-                    *value = bilinear(texels, right[i], down[i]);
-                }
+                let texels = [0, 3, stride, stride + 3].map(|texel| four(both, texel));
+                *value = bilinear(texels, right[i], down[i]);
             }
         } else {
             for (i, value) in values.iter_mut().enumerate() {
@@ -78,7 +73,7 @@ impl MipLevel {
     /// Returns a texel, its right neighbour, and the two below them.
     #[cold]
     #[inline(never)]
-    fn texels_outside(&self, column: i32, row: i32) -> [[f32; 4]; 4] {
+    fn texels_outside(&self, column: i32, row: i32) -> [f32x4; 4] {
         let (width, height) = (2 * self.height as i64, self.height as i64);
         [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(right, down)| {
             let mut column = i64::from(column) + right;
@@ -88,7 +83,7 @@ impl MipLevel {
                 column += height;
             }
             let start = (3 * (row * width + column.rem_euclid(width))) as usize;
-            [0, 1, 2, 3].map(|i| self.values[start + i])
+            four(&self.values, start)
         })
     }
 
@@ -174,12 +169,82 @@ fn cells(position: f32x4) -> (i32x4, f32x4) {
     )
 }
 
+/// Loads a texel and one value more.
+#[inline(always)]
+fn four(values: &[f32], start: usize) -> f32x4 {
+    let four: [f32; 4] = values[start..start + 4].try_into().expect("four values");
+    f32x4::new(four)
+}
+
 /// Returns the value between a texel, its right neighbour, and the two below them.
 #[inline(always)]
-fn bilinear(texels: [[f32; 4]; 4], right: f32, down: f32) -> f32x4 {
-    let [a, b, c, d] = texels.map(f32x4::new);
+fn bilinear([a, b, c, d]: [f32x4; 4], right: f32, down: f32) -> f32x4 {
     let (right, down) = (f32x4::splat(right), f32x4::splat(down));
     let upper = a + (b - a) * right;
     let lower = c + (d - c) * right;
     upper + (lower - upper) * down
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A level whose texels are all different.
+    fn level(height: usize) -> MipLevel {
+        let values = (0..MipLevel::length(height)).map(|i| ((i * 7919) % 1009) as f32);
+        MipLevel::new(height, values.collect())
+    }
+
+    /// Returns the mean of all texels' values of one colour.
+    fn mean(level: &MipLevel, colour: usize) -> f64 {
+        let texels = level
+            .values
+            .chunks_exact(3)
+            .map(|texel| f64::from(texel[colour]));
+        texels.sum::<f64>() / (2 * level.height * level.height) as f64
+    }
+
+    #[test]
+    fn each_level_keeps_the_mean() {
+        for height in [2, 3, 5, 31, 64, 255] {
+            let first = level(height);
+            let mut last = first.halved();
+            while let Some(level) = last {
+                for colour in 0..3 {
+                    assert!((mean(&level, colour) / mean(&first, colour) - 1.0).abs() < 1e-6);
+                }
+                last = level.halved();
+            }
+        }
+        assert!(level(1).halved().is_none());
+    }
+
+    #[test]
+    fn an_odd_height_is_halved_by_parts() {
+        // Six columns of three rows become two of one: each new texel covers 3 × 3.
+        let mut values = vec![0.0; MipLevel::length(3)];
+        for (texel, value) in values.chunks_exact_mut(3).enumerate() {
+            value[0] = if texel % 6 < 3 { 1.0 } else { 4.0 };
+        }
+        let halved = MipLevel::new(3, values).halved().expect("a level");
+        assert!((halved.values[0] - 1.0).abs() < 1e-6 && (halved.values[3] - 4.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn values_at_and_between_texels() {
+        let level = level(4);
+        let texel = |column: usize, row: usize| level.values[3 * (8 * row + column)];
+        let at =
+            |x: f32, y: f32| level.each_at::<1>(f32x4::splat(x), f32x4::splat(y))[0].to_array()[0];
+        for (column, row) in [(0, 0), (7, 0), (7, 3), (3, 2)] {
+            assert_eq!(at(column as f32, row as f32), texel(column, row));
+        }
+        assert_eq!(at(2.5, 1.0), 0.5 * (texel(2, 1) + texel(3, 1)));
+        assert_eq!(at(2.0, 1.25), 0.75 * texel(2, 1) + 0.25 * texel(2, 2));
+        // Beyond the left edge, and beyond a pole.
+        assert_eq!(at(-0.5, 1.0), 0.5 * (texel(7, 1) + texel(0, 1)));
+        assert_eq!(at(8.0, 1.0), texel(0, 1));
+        assert_eq!(at(1.0, -1.0), texel(5, 0));
+        assert_eq!(at(1.0, 4.0), texel(5, 3));
+    }
 }
