@@ -28,7 +28,9 @@ fn texel(path: &Path, exposure: f64, column: usize, row: usize) -> [f32; 3] {
 fn problem(path: &Path, max_bytes: u64) -> (PanoramaProblem, String) {
     let error = Panorama::open(path, 0.0, max_bytes).expect_err("no panorama");
     let sentence = error.to_string();
-    let SkyError::Panorama { problem, .. } = error;
+    let SkyError::Panorama { problem, .. } = error else {
+        panic!("{error}");
+    };
     assert!(
         sentence.starts_with(&format!("panorama {}: ", path.display())),
         "{sentence}"

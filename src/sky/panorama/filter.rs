@@ -23,6 +23,10 @@ const ONE_TAP: f32 = 1.5;
 const FULL_WIDTH: f32 = 3.0;
 /// Up to this sum four taps do, whatever the footprint's shape: a square of two texels.
 const FOUR_TAPS: f32 = 8.0;
+/// Up to this squared width and height the four taps lie within 3 × 3 texels.
+const SMALL: f32 = 3.0;
+/// Of so small a footprint the correlation of width and height is left out up to this share.
+const UPRIGHT: f32 = 0.2;
 /// Nearly a square: the squares of the axes differ by less than this share of their sum, squared.
 const SQUARE: f32 = 0.02;
 /// Of this length, in texels of the level and squared, a footprint takes two rows of taps.
@@ -105,8 +109,12 @@ impl Panorama {
         let (a, b) = ([ax * width, ay * height], [bx * width, by * height]);
         let xx = a[0] * a[0] + b[0] * b[0];
         let yy = a[1] * a[1] + b[1] * b[1];
-        let means: [f32x4; N] = if (xx + yy).simd_le(f32x4::splat(ONE_TAP)).all() {
+        let one = (xx + yy).simd_le(f32x4::splat(ONE_TAP));
+        let is_small = !one & is_small([a, b], [xx, yy]);
+        let means: [f32x4; N] = if one.all() {
             self.levels[0].each_at(x, y)
+        } else if is_small.all() {
+            self.levels[0].each_about(x, y, spread(xx, xx + yy), spread(yy, xx + yy))
         } else {
             // cos(latitude) = sin(πv), by a parabola.
             let cos = f32x4::splat(4.0) * v * (one - v);
@@ -136,6 +144,7 @@ impl Panorama {
         let &Footprints { x, y, xx, yy, .. } = footprints;
         let trace = xx + yy;
         let one = trace.simd_le(f32x4::splat(ONE_TAP)).to_bitmask();
+        let is_small = is_small([footprints.a, footprints.b], [xx, yy]).to_bitmask();
         let (taps, compact) = self.compact_taps(footprints);
         let taps = if compact.all() {
             taps
@@ -149,6 +158,11 @@ impl Panorama {
             let lane = |lanes: f32x4| f32x4::splat(lanes.to_array()[i]);
             if one >> i & 1 == 1 {
                 [*mean] = self.levels[0].each_at(lane(x), lane(y));
+                continue;
+            }
+            if is_small >> i & 1 == 1 {
+                let (across, down) = (spread(xx, trace), spread(yy, trace));
+                [*mean] = self.levels[0].each_about(lane(x), lane(y), lane(across), lane(down));
                 continue;
             }
             let level = &self.levels[taps.level.to_array()[i] as usize];
@@ -262,6 +276,24 @@ impl Panorama {
             .max(i32x4::splat(0))
             .min(i32x4::splat(self.levels.len() as i32 - 1))
     }
+}
+
+/// Tells which footprints' taps lie within 3 × 3 texels: a mask.
+#[inline(always)]
+fn is_small([a, b]: [[f32x4; 2]; 2], [xx, yy]: [f32x4; 2]) -> f32x4 {
+    let s = f32x4::splat;
+    let xy = a[0] * a[1] + b[0] * b[1];
+    let is_upright = xy.abs().simd_le(s(UPRIGHT) * (xx + yy));
+    xx.simd_le(s(SMALL)) & yy.simd_le(s(SMALL)) & is_upright
+}
+
+/// Returns how far taps are from the middle along an axis, in texels of the first level, for a squared extent of the
+/// footprint along it; `all` is the sum of both.
+#[inline(always)]
+fn spread(extent: f32x4, all: f32x4) -> f32x4 {
+    let s = f32x4::splat;
+    let part = (all - s(ONE_TAP)) * s(1.0 / (FULL_WIDTH - ONE_TAP));
+    (part.max(s(0.0)).min(s(1.0)) * extent * s(1.0 / 12.0)).sqrt()
 }
 
 /// Returns 2⁻ˡ.

@@ -70,21 +70,76 @@ impl MipLevel {
         values
     }
 
+    /// Returns for the first N of four places the mean of the bilinear values at the four places `± across` and `± down`
+    /// from there, each at most half a texel.
+    #[inline(always)]
+    pub(super) fn each_about<const N: usize>(
+        &self,
+        x: f32x4,
+        y: f32x4,
+        across: f32x4,
+        down: f32x4,
+    ) -> [f32x4; N] {
+        let half = f32x4::splat(0.5);
+        // The texel before the one whose centre is nearest.
+        let (column, right) = cells(x - half);
+        let (row, below) = cells(y - half);
+        let (columns, rows) = (2 * self.height as i32, self.height as i32);
+        let inside =
+            column | row | (i32x4::splat(columns - 3) - column) | (i32x4::splat(rows - 3) - row);
+        let [left, middle, right] = three_weights(right - half, across);
+        let [above, level, below] = three_weights(below - half, down);
+        let weigh = |i: usize, rows: [[f32x4; 3]; 3]| {
+            let lane = |weights: f32x4| f32x4::splat(weights.to_array()[i]);
+            let (left, middle, right) = (lane(left), lane(middle), lane(right));
+            let [upper, own, lower] = rows.map(|[a, b, c]| (left * a + middle * b) + right * c);
+            (lane(above) * upper + lane(level) * own) + lane(below) * lower
+        };
+        let stride = 3 * columns as usize;
+        let starts = row * i32x4::splat(stride as i32) + (column + column + column);
+        let mut values = [f32x4::ZERO; N];
+        if inside.to_bitmask() == 0 {
+            for (i, value) in values.iter_mut().enumerate() {
+                let start = starts.to_array()[i] as u32 as usize;
+                let texels = &self.values[start..start + 2 * stride + 10];
+                let rows = [0, stride, 2 * stride];
+                let three = |row: usize| [row, row + 3, row + 6].map(|texel| four(texels, texel));
+                *value = weigh(i, rows.map(three));
+            }
+        } else {
+            for (i, value) in values.iter_mut().enumerate() {
+                let (column, row) = (column.to_array()[i], row.to_array()[i]);
+                *value = weigh(i, self.three_by_three_outside(column, row));
+            }
+        }
+        values
+    }
+
+    /// Returns 3 × 3 texels, some of which may lie outside.
+    #[cold]
+    #[inline(never)]
+    fn three_by_three_outside(&self, column: i32, row: i32) -> [[f32x4; 3]; 3] {
+        [0, 1, 2].map(|down| [0, 1, 2].map(|right| self.texel(column, row, (right, down))))
+    }
+
     /// Returns a texel, its right neighbour, and the two below them.
     #[cold]
     #[inline(never)]
     fn texels_outside(&self, column: i32, row: i32) -> [f32x4; 4] {
+        [(0, 0), (1, 0), (0, 1), (1, 1)].map(|offset| self.texel(column, row, offset))
+    }
+
+    /// Returns the texel to the right of another one and below it, wherever that is.
+    fn texel(&self, column: i32, row: i32, (right, down): (i64, i64)) -> f32x4 {
         let (width, height) = (2 * self.height as i64, self.height as i64);
-        [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(right, down)| {
-            let mut column = i64::from(column) + right;
-            let mut row = (i64::from(row) + down).rem_euclid(2 * height);
-            if row >= height {
-                row = 2 * height - 1 - row;
-                column += height;
-            }
-            let start = (3 * (row * width + column.rem_euclid(width))) as usize;
-            four(&self.values, start)
-        })
+        let mut column = i64::from(column) + right;
+        let mut row = (i64::from(row) + down).rem_euclid(2 * height);
+        if row >= height {
+            row = 2 * height - 1 - row;
+            column += height;
+        }
+        let start = (3 * (row * width + column.rem_euclid(width))) as usize;
+        four(&self.values, start)
     }
 
     /// Returns the next smaller level, of half the height, rounded down; none below a height of 1.
@@ -247,4 +302,15 @@ mod tests {
         assert_eq!(at(1.0, -1.0), texel(5, 0));
         assert_eq!(at(1.0, 4.0), texel(5, 3));
     }
+}
+
+/// Returns the weights of three neighbours in the mean of two linear interpolations, `spread` before and after a place
+/// that is `off` from the middle one; both are at most ½.
+#[inline(always)]
+fn three_weights(off: f32x4, spread: f32x4) -> [f32x4; 3] {
+    let (half, zero) = (f32x4::splat(0.5), f32x4::splat(0.0));
+    let (first, last) = (off - spread, off + spread);
+    let before = half * ((-first).max(zero) + (-last).max(zero));
+    let after = half * (first.max(zero) + last.max(zero));
+    [before, f32x4::splat(1.0) - before - after, after]
 }
