@@ -32,7 +32,7 @@ fn seen(scene: &Scene, view: &View, orbits: &impl Orbits, pixel: (u32, u32)) -> 
     }
     let [p, a, b] = view.axes();
     let across = (a * pixel.ta + b * pixel.tb) / pixel.transverse();
-    Seen::Sky((p * end.angle.cos() + across * end.angle.sin()).to_array())
+    Seen::Sky((p * libm::cos(end.angle) + across * libm::sin(end.angle)).to_array())
 }
 
 /// Compares every row of every reference, or every `step`th: the same kind and order, azimuths within 1e-12, everything

@@ -53,9 +53,9 @@ fn directions_are_those_of_the_references() {
                 let latitude = (v - 0.5) * PI;
                 let longitude = (0.5 - u) * TAU;
                 let place = [
-                    latitude.cos() * longitude.cos(),
-                    latitude.cos() * longitude.sin(),
-                    latitude.sin(),
+                    libm::cos(latitude) * libm::cos(longitude),
+                    libm::cos(latitude) * libm::sin(longitude),
+                    libm::sin(latitude),
                 ];
                 worst_place = worst_place.max(apart(place, *expected));
                 seen += 1;

@@ -13,7 +13,7 @@ use crate::tables::table;
 /// Rays a side of a pixel.
 const RAYS: u32 = 64;
 
-/// A repeatable sequence of numbers from 0 to 1 (SplitMix64).
+/// A repeatable sequence of numbers from 0 to 1 (`SplitMix64`).
 struct Random(u64);
 
 impl Random {
@@ -102,8 +102,8 @@ fn of_rays(view: &View, curve: &EscapeCurve, panorama: &Panorama, (i, j): (u32, 
             let Some(escape) = curve.at(ray.z, s) else {
                 continue;
             };
-            let direction =
-                p * escape.angle.cos() + (a * ray.ta + b * ray.tb) * (escape.angle.sin() / s);
+            let direction = p * libm::cos(escape.angle)
+                + (a * ray.ta + b * ray.tb) * (libm::sin(escape.angle) / s);
             let (u, v) = place(direction);
             let texel = panorama.mean([u as f32, v as f32], [0.0; 2], [0.0; 2]);
             for (sum, c) in sum.iter_mut().zip(texel) {

@@ -122,7 +122,9 @@ impl Tiled<NODES> for DirectionTiles<'_, '_, '_> {
             set(self.band, first, to - from, |quantity, values| {
                 patch.row(quantity, y).fill(from as f64 + 0.5, values);
                 if quantity == 3 {
-                    values.iter_mut().for_each(|u| *u = wrapped(*u));
+                    for u in values {
+                        *u = wrapped(*u);
+                    }
                 }
             });
         }

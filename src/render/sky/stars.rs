@@ -185,7 +185,7 @@ impl StarView<'_> {
         let direction = star.direction;
         let (along, across) = (direction.dot(p), (direction.dot(a), direction.dot(b)));
         let sine = (across.0 * across.0 + across.1 * across.1).sqrt();
-        let first = if projection.shows_first(along) { 0 } else { 1 };
+        let first = usize::from(!projection.shows_first(along));
         if first > projection.last {
             return;
         }
@@ -267,12 +267,12 @@ impl Projection {
             libm::cos(most_swept.min(PI)) - 1e-9,
             libm::cos(least_swept.min(PI)) + 1e-9,
         );
-        let most = core::array::from_fn(|order| match order {
-            0 => f64::INFINITY,
-            _ => {
-                let image = curve.image(PI * order as f64);
-                image.sine / image.rate
+        let most = core::array::from_fn(|order| {
+            if order == 0 {
+                return f64::INFINITY;
             }
+            let image = curve.image(PI * order as f64);
+            image.sine / image.rate
         });
         let (z, ta, tb) = (view.z(), view.ta(), view.tb());
         let side = view.pixel_side();

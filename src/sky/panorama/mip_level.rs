@@ -240,6 +240,17 @@ fn bilinear([a, b, c, d]: [f32x4; 4], right: f32, down: f32) -> f32x4 {
     upper + (lower - upper) * down
 }
 
+/// Returns the weights of three neighbours in the mean of two linear interpolations, `spread` before and after a place
+/// that is `off` from the middle one; both are at most ½.
+#[inline(always)]
+fn three_weights(off: f32x4, spread: f32x4) -> [f32x4; 3] {
+    let (half, zero) = (f32x4::splat(0.5), f32x4::splat(0.0));
+    let (first, last) = (off - spread, off + spread);
+    let before = half * ((-first).max(zero) + (-last).max(zero));
+    let after = half * (first.max(zero) + last.max(zero));
+    [before, f32x4::splat(1.0) - before - after, after]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -302,15 +313,4 @@ mod tests {
         assert_eq!(at(1.0, -1.0), texel(5, 0));
         assert_eq!(at(1.0, 4.0), texel(5, 3));
     }
-}
-
-/// Returns the weights of three neighbours in the mean of two linear interpolations, `spread` before and after a place
-/// that is `off` from the middle one; both are at most ½.
-#[inline(always)]
-fn three_weights(off: f32x4, spread: f32x4) -> [f32x4; 3] {
-    let (half, zero) = (f32x4::splat(0.5), f32x4::splat(0.0));
-    let (first, last) = (off - spread, off + spread);
-    let before = half * ((-first).max(zero) + (-last).max(zero));
-    let after = half * (first.max(zero) + last.max(zero));
-    [before, f32x4::splat(1.0) - before - after, after]
 }
