@@ -1,4 +1,4 @@
-//! The limit on the memory of frames. The system grants more memory than it has, and kills the process that uses it, so
+//! The limit on the memory of frames, which the sky shares. The system grants more memory than it has, and kills the process that uses it, so
 //! the limit is checked first.
 
 use std::io;
