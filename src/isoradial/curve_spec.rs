@@ -56,7 +56,8 @@ impl CurveSpec {
 
     /// Describes the curves for all rays of a camera at inverse radius `u0`, where `slope_scale` is `u0 √(1 − u0)`.
     ///
-    /// `radii` are those of the disk's inner and outer edge. A pixel is one radian and the tolerance one pixel. Set [`Self::pixel`] and [`Self::tolerance`] for others.
+    /// `radii` are those of the disk's inner and outer edge. A pixel is one radian and the tolerance one pixel. Set
+    /// [`Self::pixel`] and [`Self::tolerance`] for others.
     pub fn all_round(u0: f64, slope_scale: f64, radii: Option<(f64, f64)>) -> Self {
         Self {
             u0,

@@ -1,8 +1,9 @@
 //! Scenes: the camera, the disk, the sky and the picture's size.
 //!
 //! A [`Scene`] is read from TOML ([`Scene::load`], [`Scene::from_toml`], [`Scene::builtin`]) or built from values
-//! ([`Scene::new`], [`Scene::without_disk`]). It is checked: every number is finite, the camera is outside the horizon and outside the disk's
-//! matter and looks somewhere, the disk's orbits are stable. A [`View`] is what a frame computes with, one ray a pixel.
+//! ([`Scene::new`], [`Scene::without_disk`]). It is checked: every number is finite, the camera is outside the horizon
+//! and outside the disk's matter and looks somewhere, the disk's orbits are stable. A [`View`] is what a frame computes
+//! with, one ray a pixel.
 //!
 //! ```toml
 //! [camera]

@@ -1,8 +1,8 @@
 //! Frames as OpenEXR files.
 //!
 //! One part of 32-bit floats, compressed by ZIP in blocks of 16 rows. Colour is in the channels `R`, `G`, `B` and, with
-//! the alpha layer, `A`: linear and premultiplied, with the chromaticities of Rec. 709. The direction of the
-//! sky is in `sky.x`, `sky.y` and `sky.z`, its place in a panorama in `sky.u` and `sky.v`. Each other layer is a channel
+//! the alpha layer, `A`: linear and premultiplied, with the chromaticities of Rec. 709. The direction of the sky is in
+//! `sky.x`, `sky.y` and `sky.z`, its place in a panorama in `sky.u` and `sky.v`. Each other layer is a channel
 //! `disk.NAME`. Text attributes hold the program's version (`software`) and the [`FrameOrigin`]: `darkness:scene`,
 //! `darkness:table`, `darkness:frame`. The format does not check its data, so `darkness:crc32` holds the CRC-32 of the
 //! whole file with eight zeros in its own place.

@@ -1,11 +1,58 @@
-//! The fields of one line of a CSV file.
+//! The lines of a CSV file and their fields, in bounded memory.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
 
 use csv_core::{ReadRecordResult, Reader};
 
-/// A line has at most so many bytes.
-pub(super) const LONGEST_LINE: usize = 1 << 16;
+use super::fault::{CatalogueFault, LONGEST_LINE};
 
 const MOST_FIELDS: usize = 1024;
+
+/// The lines of a file that are neither blank nor comments.
+pub(super) struct LineReader {
+    file: BufReader<File>,
+    /// The line last read, with a line feed at its end.
+    pub(super) line: Vec<u8>,
+    /// Its number, from 1.
+    pub(super) number: u64,
+}
+
+impl LineReader {
+    pub(super) fn new(file: File) -> Self {
+        Self {
+            file: BufReader::with_capacity(LONGEST_LINE, file),
+            line: Vec::new(),
+            number: 0,
+        }
+    }
+
+    /// Reads the next line. Returns false at the end of the file.
+    pub(super) fn next(&mut self) -> Result<bool, CatalogueFault> {
+        loop {
+            self.line.clear();
+            let length = (&mut self.file)
+                .take(LONGEST_LINE as u64)
+                .read_until(b'\n', &mut self.line)?;
+            if length == 0 {
+                return Ok(false);
+            }
+            self.number += 1;
+            if !self.line.ends_with(b"\n") {
+                if length == LONGEST_LINE {
+                    return Err(CatalogueFault::LongLine(self.number));
+                }
+                self.line.push(b'\n');
+            }
+            if self.number == 1 && self.line.starts_with(b"\xef\xbb\xbf") {
+                self.line.drain(..3);
+            }
+            if !self.line.starts_with(b"#") && !self.line.trim_ascii().is_empty() {
+                return Ok(true);
+            }
+        }
+    }
+}
 
 /// One line's fields. The memory is the same for every line and does not grow.
 ///

@@ -1,13 +1,14 @@
 //! A star field that looks like a night sky and needs no catalogue.
 //!
-//! * **Magnitudes.** The number of stars brighter than m is that of the whole sky, `log₁₀ N = 0.64 + 0.53 m − 0.004 m²`.
-//!   It fits the counts of the Hipparcos catalogue (ESA 1997, SP-1200) from m = −1 (1 star) to m = 8 (40,858) within a
-//!   fifth. A uniform space has 0.6 m; dust and the galaxy's shape bend the curve. The star of rank k, from 0, has a
-//!   count N drawn uniformly from k + ½ to k + 1½: the first star has a magnitude of about −1, and a field of 5000
-//!   stars ends near m = 6, as the naked eye does.
+//! * **Magnitudes.** The number of stars brighter than m is that of the whole sky,
+//!   `log₁₀ N = 0.64 + 0.53 m − 0.004 m²`. It fits the counts of the Hipparcos catalogue (ESA 1997, SP-1200) from m = 1
+//!   (15 stars) to m = 8 (40,858) within a fifth. A uniform space has 0.6 m; dust and the galaxy's shape bend the
+//!   curve. The star of rank k, from 0, has a count N drawn uniformly from k + ½ to k + 1½: the first star has a
+//!   magnitude of about −1, and a field of 5000 stars ends near m = 6, as the naked eye does.
 //! * **Places.** Six stars in ten are uniform on the sphere. The others have a galactic latitude b with
-//!   `sin b = 0.35 (U₁ + U₂ − U₃ − U₄)`, U uniform in 0 to 1, so that the sky is about 3.5 times as dense at the galactic
-//!   equator as at its poles. The galactic pole is the real one: right ascension 192.85948°, declination 27.12825°.
+//!   `sin b = 0.35 (U₁ + U₂ − U₃ − U₄)`, U uniform in 0 to 1, so that the sky is about 3.5 times as dense at the
+//!   galactic equator as at its poles. The galactic pole is the real one: right ascension 192.85948°, declination
+//!   27.12825°.
 //! * **Temperatures.** 55 % are log-normal about 4700 K (σ = 0.18), 45 % about 9500 K (σ = 0.33): the orange giants and
 //!   the blue-white stars that make up the visible sky. The normal distribution is the sum of four uniform numbers,
 //!   which ends at 3.5 σ: all temperatures are between 2500 K and 30,000 K.
@@ -28,6 +29,7 @@ const GALACTIC: [(f64, f64); 3] = [
 
 impl StarField {
     /// Makes up `count` stars, from the brightest to the faintest, and drops those fainter than `magnitude_limit`.
+    /// A star takes 32 bytes.
     ///
     /// The field depends on nothing but the arguments; a field of fewer stars with the same seed is its beginning.
     pub fn synthetic(count: u32, seed: u64, magnitude_limit: Option<f64>) -> Self {

@@ -1,0 +1,121 @@
+//! The mean of equidistant lines over a footprint.
+//!
+//! The formulas are in the documentation of the parent module.
+
+use std::f64::consts::PI;
+
+use super::polygon::{clip, cross, dot, edges};
+
+/// Equidistant lines, and a footprint across them. All lengths are in units of the lines' distance.
+pub(super) struct Lines {
+    /// The footprint's centre, from the nearest line.
+    place: f64,
+    /// The footprint's two sides.
+    along: [f64; 2],
+    half_width: f64,
+}
+
+impl Lines {
+    /// `count` lines around a circle of length 1, one of them at 0.
+    pub(super) fn new(place: f64, along: [f64; 2], half_width: f64, count: f64) -> Self {
+        Self {
+            place: from_nearest_integer(place * count),
+            along: along.map(|along| along * count),
+            half_width: half_width * count,
+        }
+    }
+
+    /// Returns the footprint's extent across the lines.
+    fn extent(&self) -> f64 {
+        self.along[0].abs() + self.along[1].abs()
+    }
+
+    /// Returns the share of the footprint that lies in lines.
+    pub(super) fn mean(&self) -> f64 {
+        /// Narrower footprints would lose digits: G is known to 1e-18 or so, and it is divided by the two widths.
+        const NARROWEST: f64 = 1e-5;
+        const THINNEST: f64 = 1e-3;
+        let [first, second] = self.along.map(f64::abs);
+        let a = first.max(second).max(NARROWEST);
+        let b = first.min(second).max(THINNEST * a);
+        let r = self.half_width;
+        let g = |x: f64| {
+            let y = from_nearest_integer(x).abs();
+            let inside = (r - y).max(0.0);
+            r * y * (1.0 - y) + 0.5 * inside * inside
+        };
+        let (x, far, near) = (self.place, 0.5 * (a + b), 0.5 * (a - b));
+        let bend = (g(x + far) - g(x + near)) - (g(x - near) - g(x - far));
+        (2.0 * r + bend / (a * b)).clamp(0.0, 1.0)
+    }
+
+    /// Returns the share of the footprint that lies in lines of both families, whose own means are given. Footprints
+    /// wider than half a step count as independent in the two.
+    pub(super) fn mean_crossing(&self, mean: f64, other: &Self, other_mean: f64) -> f64 {
+        if mean.min(other_mean) <= 0.0 || self.extent().max(other.extent()) > 0.5 {
+            return mean * other_mean;
+        }
+        // The footprint as a unit square, and what the nearest two lines leave of it.
+        let mut polygon = vec![[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
+        for lines in [self, other] {
+            for side in [1.0, -1.0] {
+                polygon = clip(&polygon, |point| {
+                    lines.half_width - side * (lines.place + dot(lines.along, point))
+                });
+            }
+        }
+        let crosses = edges(&polygon).map(|(start, end)| cross(start, end));
+        let area: f64 = 0.5 * crosses.sum::<f64>();
+        area.max(mean + other_mean - 1.0).min(mean.min(other_mean))
+    }
+}
+
+/// Returns the signed distance from the nearest integer, for numbers up to 2⁵¹.
+#[inline(always)]
+pub(super) fn from_nearest_integer(x: f64) -> f64 {
+    // Numbers of this size have no fraction, so that the sum is rounded.
+    const SHIFT: f64 = 1.5 * (1_u64 << 52) as f64;
+    x - ((x + SHIFT) - SHIFT)
+}
+
+/// The half width of the meridians in units of the whole circle, integrated over v.
+///
+/// It repeats itself with the period 1: it is symmetric about the poles (v = 0 and 1) and about the equator. The
+/// integral begins at v = −½ and ends at v = 3/2.
+#[derive(Debug, Clone)]
+pub(super) struct MeridianWidths {
+    integral: Vec<f64>,
+}
+
+impl MeridianWidths {
+    /// The number of cells from v = 0 to 1.
+    const CELLS: usize = 1024;
+    pub(super) const CELL: f64 = 1.0 / Self::CELLS as f64;
+
+    /// The half width is `at_equator/cos(latitude)`, at most `most`.
+    pub(super) fn new(at_equator: f64, most: f64) -> Self {
+        let mut sum = 0.0;
+        let integral = (0..=2 * Self::CELLS)
+            .map(|i| {
+                let here = sum;
+                let cos_latitude = libm::cos(PI * Self::CELL * (i as f64 + 0.5)).abs();
+                sum += Self::CELL * (at_equator / cos_latitude).min(most);
+                here
+            })
+            .collect();
+        Self { integral }
+    }
+
+    /// Returns the mean from `v − reach` to `v + reach`; at most over one period.
+    pub(super) fn mean_half(&self, v: f64, reach: f64) -> f64 {
+        let reach = reach.clamp(0.5 * Self::CELL, 0.5);
+        (self.until(v + reach) - self.until(v - reach)) / (2.0 * reach)
+    }
+
+    fn until(&self, v: f64) -> f64 {
+        let place = (v + 0.5) * Self::CELLS as f64;
+        let index = (place as usize).min(2 * Self::CELLS - 1);
+        let [start, end] = [self.integral[index], self.integral[index + 1]];
+        start + (place - index as f64) * (end - start)
+    }
+}
