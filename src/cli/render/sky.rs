@@ -1,5 +1,6 @@
 //! A scene's sky: its files, what they hold, and the memory that they take.
 
+use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
 use std::path::Path;
@@ -12,7 +13,7 @@ use super::super::misuse::misuse;
 use super::super::progress::{Report, warn};
 use crate::scene::{Sky, SkyFile, StarSource};
 use crate::sky::stars::{CatalogueError, CatalogueFault, Star};
-use crate::sky::{BadRows, PanoramaProblem, SkyError, SkySource};
+use crate::sky::{BadRows, Panorama, PanoramaProblem, SkyError, SkySource};
 
 /// So many bad rows of a catalogue are told of with their reasons.
 const ROWS_TOLD: usize = 5;
@@ -126,7 +127,7 @@ pub(super) fn read(
 /// Returns the bytes of memory that a sky takes once it is read.
 pub(super) fn bytes(source: &SkySource) -> u64 {
     let stars = source.stars().map_or(0, |field| field.stars.len());
-    let panorama = source.panorama().map_or(0, |panorama| panorama.bytes());
+    let panorama = source.panorama().map_or(0, Panorama::bytes);
     panorama + (stars * size_of::<Star>()) as u64
 }
 
@@ -151,10 +152,10 @@ fn tell_bad_rows(catalogue: &Path, rows: &BadRows) {
         rows.count
     );
     for row in rows.first.iter().take(ROWS_TOLD) {
-        text.push_str(&format!("\n  {row}"));
+        let _ = write!(text, "\n  {row}");
     }
     if rows.count > ROWS_TOLD as u64 {
-        text.push_str(&format!("\n  and {} more", rows.count - ROWS_TOLD as u64));
+        let _ = write!(text, "\n  and {} more", rows.count - ROWS_TOLD as u64);
     }
     warn(text);
 }
