@@ -72,17 +72,21 @@ pub(super) fn run(args: &JobArgs, report: Report) -> anyhow::Result<()> {
     let table = args.table.clone().unwrap_or_else(default);
     let [scene, table, output] = [&args.scene, &table, &output].map(|path| text(path));
     let (scene, table, output) = (scene?, table?, output?);
+    let sky_files = render::sky_files(animation.sky().filter(|_| form.shows_light()));
+    let sky_files = sky_files.map(|(file, what)| Ok((what, text(&file.path)?)));
+    let sky_files: Vec<_> = sky_files.collect::<anyhow::Result<_>>()?;
 
     let (template, mut pieces) = match args.scheduler {
         Scheduler::Openjd => {
             let (folder, pattern) = output.rsplit_once('/').unwrap_or((".", &output));
             let pieces = vec![
                 ("SCENE", openjd_scene(&scene)),
+                ("SKY", openjd_sky(&sky_files)),
                 ("FOLDER", default_of(folder)),
                 ("PATTERN", quoted(pattern)),
                 ("TABLE", default_of(&table)),
                 ("FILE", "job.yaml".into()),
-                ("GIVEN", given(&scene, folder, &table)),
+                ("GIVEN", given(&scene, &sky_files, folder, &table)),
             ];
             (include_str!("job/openjd.yaml"), pieces)
         }
@@ -97,6 +101,7 @@ pub(super) fn run(args: &JobArgs, report: Report) -> anyhow::Result<()> {
             }
             let pieces = vec![
                 ("SCENE", shell(&scene)),
+                ("SKY", slurm_sky(&sky_files)),
                 ("TABLE", shell(&table)),
                 ("OUT", shell(&output)),
                 ("LAST_TASK", (tasks - 1).to_string()),
@@ -170,6 +175,35 @@ fn openjd_scene(scene: &str) -> String {
     format!("  - name: Scene\n    type: {kind}\n    description: {what}{default}")
 }
 
+/// The parameters of the sky's files, so that they are shipped with the scene.
+fn openjd_sky(files: &[(&str, String)]) -> String {
+    let parameter = |(what, path): &(&str, String)| {
+        let (name, default) = (openjd_name(what), default_of(path));
+        format!(
+            "\n  - name: {name}\n    type: PATH\n    objectType: FILE\n    dataFlow: IN\n    description: The scene's \
+             {what}. The scene finds it by its place beside the scene's file.{default}"
+        )
+    };
+    files.iter().map(parameter).collect()
+}
+
+/// The parameter of a file of the sky.
+fn openjd_name(what: &str) -> &'static str {
+    if what == "panorama" {
+        "Panorama"
+    } else {
+        "Stars"
+    }
+}
+
+/// The comment of a script that names the sky's files.
+fn slurm_sky(files: &[(&str, String)]) -> String {
+    let line = |(what, path): &(&str, String)| {
+        format!("\n# All nodes read the scene's {what} too: {path}")
+    };
+    files.iter().map(line).collect()
+}
+
 /// The line of a path's default, if it can be one.
 fn default_of(path: &str) -> String {
     if is_below(path) {
@@ -180,13 +214,14 @@ fn default_of(path: &str) -> String {
 }
 
 /// The arguments for paths that cannot be defaults.
-fn given(scene: &str, folder: &str, table: &str) -> String {
+fn given(scene: &str, sky_files: &[(&str, String)], folder: &str, table: &str) -> String {
     let mut text = String::new();
-    for (name, value, is_name) in [
-        ("Scene", scene, is_builtin(scene)),
-        ("OutputDir", folder, false),
-        ("Table", table, false),
-    ] {
+    let sky_files = sky_files
+        .iter()
+        .map(|(what, path)| (openjd_name(what), path.as_str(), false));
+    let others = [("OutputDir", folder, false), ("Table", table, false)];
+    let scene = [("Scene", scene, is_builtin(scene))];
+    for (name, value, is_name) in scene.into_iter().chain(sky_files).chain(others) {
         if !is_name && !is_below(value) {
             text.push_str(" -p ");
             text.push_str(&shell(&format!("{name}={value}")));

@@ -219,11 +219,15 @@ impl Method {
 
 /// Returns the SHA-256 of some bytes, in hexadecimal.
 pub(super) fn hex(bytes: &[u8]) -> String {
+    use sha2::Digest;
+    digits(&sha2::Sha256::digest(bytes))
+}
+
+/// Returns bytes as hexadecimal digits.
+pub(super) fn digits(bytes: &[u8]) -> String {
     use std::fmt::Write;
 
-    use sha2::Digest;
-    let digest = sha2::Sha256::digest(bytes);
-    digest.iter().fold(String::new(), |mut text, byte| {
+    bytes.iter().fold(String::new(), |mut text, byte| {
         let _ = write!(text, "{byte:02x}");
         text
     })

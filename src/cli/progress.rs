@@ -47,6 +47,19 @@ impl Report {
         }
     }
 
+    /// A sign that something goes on, which vanishes when it is dropped. It is drawn only on a terminal.
+    pub(super) fn spinner(self, what: String) -> ProgressBar {
+        let spinner = if self.quiet {
+            ProgressBar::hidden()
+        } else {
+            ProgressBar::new_spinner()
+        };
+        spinner.enable_steady_tick(Duration::from_millis(100));
+        spinner
+            .with_message(what)
+            .with_finish(ProgressFinish::AndClear)
+    }
+
     /// A bar of `total` steps, each a `unit`, which vanishes when it is dropped. It is drawn only on a terminal.
     pub(super) fn bar(self, total: u64, what: &'static str, unit: &str) -> ProgressBar {
         let target = if self.quiet {

@@ -69,7 +69,7 @@ impl Form {
     }
 
     /// Whether it shows light.
-    pub(super) fn shows_light(self) -> bool {
+    pub fn shows_light(self) -> bool {
         match self {
             Self::Grey8 | Self::Grey16 => false,
             Self::Rgb8 | Self::Rgb16 => true,

@@ -4,6 +4,7 @@
 use core::alloc::{GlobalAlloc, Layout};
 use core::sync::atomic::{AtomicU64, Ordering};
 use std::alloc::System;
+use std::sync::Arc;
 
 use darkness::Renderer;
 use darkness::cli::FrameRange;
@@ -12,7 +13,8 @@ use darkness::orbit::exact::Exact;
 use darkness::render::batch::{self, Curved, DrawnFrame, Frames, Sharing};
 use darkness::render::frame::{Threads, Workspace};
 use darkness::render::{Form, FrameMemory};
-use darkness::scene::{Animation, Layer, Scene, View};
+use darkness::scene::{Animation, Layer, Scene, Sky, SkyFile, StarSource, Stars, View};
+use darkness::sky::{Panorama, SkySource, StarField};
 
 use crate::tables;
 
@@ -141,4 +143,46 @@ fn steps_of_an_orbit(form: Form, smooth: bool) {
     };
     assert!(count(&mut draw) > 0);
     assert_eq!(count(draw), 0, "lit-orbit, {form:?}, smooth {smooth}");
+}
+
+/// A panorama and stars in memory, behind a lit disk and without one, on one thread.
+pub(crate) fn skies_take_no_memory_once_warm() {
+    let texels = (0..6 * 64 * 64).map(|i| (i % 251) as f32 / 251.0).collect();
+    let stars = StarField::synthetic(2000, 1, None);
+    let panorama = Panorama::from_linear(64, texels);
+    let source = Arc::new(SkySource::new(Some(panorama), Some(stars), None));
+    let sky = Sky {
+        panorama: Some(SkyFile::new("in memory")),
+        stars: Some(Stars::new(StarSource::Synthetic {
+            count: 2000,
+            seed: 1,
+        })),
+        ..Sky::default()
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    pool.unwrap().install(|| {
+        let layers = [Layer::Colour, Layer::Sky, Layer::SkyUv]
+            .into_iter()
+            .collect();
+        for form in [Form::Rgb8, Form::Layers(layers)] {
+            for (name, smooth) in ["lit", "grid"]
+                .into_iter()
+                .flat_map(|name| [(name, false), (name, true)])
+            {
+                let scene = Scene::builtin(name).unwrap().with_size(96, 54).unwrap();
+                let scene = scene
+                    .with_antialias(smooth)
+                    .with_sky(Some(sky.clone()))
+                    .unwrap();
+                let renderer = Renderer::new(tables::table("standard"));
+                let mut renderer = renderer.with_sky(sky.clone(), Arc::clone(&source));
+                let mut memory = FrameMemory::new(form);
+                let mut draw = || {
+                    renderer.draw(&scene, &mut memory).unwrap();
+                };
+                assert!(count(&mut draw) > 0);
+                assert_eq!(count(draw), 0, "{name}, {form:?}, smooth {smooth}");
+            }
+        }
+    });
 }

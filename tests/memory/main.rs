@@ -13,4 +13,5 @@ fn a_frame_takes_little_memory_beside_its_pixels_and_none_once_warm() {
     resident_memory::a_frame_takes_little_more_than_its_bytes();
     allocations::frames_take_no_memory_once_warm();
     allocations::lit_frames_take_no_memory_once_warm();
+    allocations::skies_take_no_memory_once_warm();
 }

@@ -102,6 +102,32 @@ fn tables_pictures_and_angles_do_not_depend_on_threads_or_processor() {
 }
 
 #[test]
+fn skies_do_not_depend_on_threads_or_processor() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    run(here, WAYS[0], &["table", "standard", "-o", "a.table"]);
+    let noise = |x: u32, y: u32| image::Rgb([(37 * x) as u8, (59 * y) as u8, (x * y) as u8]);
+    let panorama = image::RgbImage::from_fn(64, 32, noise);
+    panorama.save(here.join("sky.png")).unwrap();
+    let sky = "[camera]\nposition = [20, 0, 4]\nfov = 50\n[sky]\npanorama = \"sky.png\"\n\
+        [image]\nwidth = 96\nheight = 54\n";
+    fs::write(here.join("panorama.toml"), sky).unwrap();
+    for scene in ["grid", "stars", "panorama.toml"] {
+        for method in ["table", "exact", "integrate"] {
+            let draw = [
+                "render", scene, "--size", "96x54", "--table", "a.table", "--method", method,
+            ];
+            let picture = same_bytes(here, &draw, Some("frame.png"));
+            assert!(picture.len() > 1000, "only {} bytes", picture.len());
+            let layers = ["--layers", "colour,sky,sky_uv"];
+            same_bytes(here, &[&draw[..], &layers].concat(), Some("frame.exr"));
+        }
+    }
+    let film = "render flyby --size 96x54 --table a.table --frames 17-180x41";
+    same_bytes(here, &film.split(' ').collect::<Vec<_>>(), Some("film.y4m"));
+}
+
+#[test]
 fn light_does_not_depend_on_threads_or_processor() {
     let folder = tempdir().unwrap();
     let here = folder.path();

@@ -20,4 +20,6 @@ mod farm;
 mod formats;
 mod long_runs;
 mod readers;
+mod skies;
+mod sky_faults;
 mod table_faults;

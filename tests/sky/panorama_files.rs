@@ -253,16 +253,12 @@ fn each_format(folder: &Path) -> Vec<Vec<u8>> {
 fn a_truncated_file_is_refused() {
     let folder = folder();
     let path = folder.path().join("sky");
-    for (i, bytes) in each_format(folder.path()).into_iter().enumerate() {
+    for bytes in each_format(folder.path()) {
         fs::write(&path, &bytes).expect("written");
         Panorama::open(&path, 0.0, PLENTY).expect("whole");
         for share in [0.02, 0.3, 0.6, 0.9] {
             fs::write(&path, &bytes[..(bytes.len() as f64 * share) as usize]).expect("written");
-            match Panorama::open(&path, 0.0, PLENTY) {
-                Err(_) => drop(problem(&path, PLENTY)),
-                // A JPEG that lacks its end is read up to there, as browsers do.
-                Ok(_) => assert!(i == 1 && share > 0.1, "{i} {share}"),
-            }
+            problem(&path, PLENTY);
         }
     }
 }

@@ -17,7 +17,7 @@
 #SBATCH --requeue
 #SBATCH --signal=B:TERM@60
 
-SCENE=@SCENE@
+SCENE=@SCENE@@SKY@
 TABLE=@TABLE@
 OUT=@OUT@
 # SLURM_ARRAY_TASK_MAX is the array's last index, not the last frame.

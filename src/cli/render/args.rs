@@ -18,8 +18,8 @@ use crate::scene::{DEFAULT_SCENE, ImageSize};
 /// The program takes the smallest table, and the fewest orders and nodes of the image's curves, that keep every edge
 /// within the scene's tolerance; --explain prints them.
 ///
-/// Finished frames of the same scene, table and version are kept: the same command continues an interrupted run. The
-/// first Ctrl-C or SIGTERM finishes the frames that are begun, the second ends the run at once.
+/// Finished frames of the same scene, sky, table and version are kept: the same command continues an interrupted run.
+/// The first Ctrl-C or SIGTERM finishes the frames that are begun, the second ends the run at once.
 #[derive(Debug, Args)]
 #[expect(
     clippy::struct_excessive_bools,
@@ -70,7 +70,7 @@ pub(in crate::cli) struct RenderArgs {
     /// The bits of a PNG picture's samples: 8 or 16 [default: the scene's; 1 for masks with hard edges]
     #[arg(long, value_name = "8|16", value_parser = bits)]
     pub(super) bits: Option<u8>,
-    /// Print the time of each part of the work: curves, render, encode, write; for one picture also culling and edges
+    /// Print the time of each part of the work: reading the sky, curves, render, encode, write
     #[arg(long, conflicts_with_all = ["explain", "dry_run"])]
     pub(super) timings: bool,
     /// Print what the picture needs and what it does not, and draw nothing
@@ -79,8 +79,9 @@ pub(in crate::cli) struct RenderArgs {
     /// Fail where the table is missing, instead of making it: for one of many workers
     #[arg(long)]
     pub(super) require_table: bool,
-    /// The most memory for the frames that are drawn at a time, such as 16GiB: for each pixel two bytes for a mask, six
-    /// for 8-bit colour, twelve for 16-bit colour, eight for each number of a layer
+    /// The most memory for the sky and the frames that are drawn at a time, such as 16GiB: for each pixel of a frame two
+    /// bytes for a mask, six for 8-bit colour, twelve for 16-bit colour, eight for each number of a layer; for each pixel
+    /// of a panorama sixteen
     #[arg(long, value_name = "SIZE", default_value = memory::DEFAULT, value_parser = memory::parse)]
     pub(super) max_memory: ByteSize,
     #[command(flatten)]

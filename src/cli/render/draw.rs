@@ -1,13 +1,18 @@
 //! How frames are drawn. This is the only file of the program that calls the renderer.
 
+use std::sync::Arc;
+
 use super::super::method::Method;
-use crate::isoradial::{Isoradials, RadiusMap};
+use crate::isoradial::{EscapeCurve, Isoradials, RadiusMap};
+use crate::orbit::Orbits;
 use crate::orbit::exact::Exact;
+use crate::orbit::path::SweptAngles;
 pub(super) use crate::render::batch::DrawnFrame;
 use crate::render::batch::{self, Curved, Frames, RayByRay, Sharing};
 use crate::render::needs::Needs;
 pub(super) use crate::render::{Form, FrameReport};
-use crate::scene::Animation;
+use crate::scene::{Animation, View};
+use crate::sky::SkySource;
 
 /// Draws the frames of an animation by some method, in some form.
 pub(super) struct FrameSource<'a> {
@@ -22,15 +27,16 @@ impl FrameSource<'_> {
         animation: &Animation,
         form: Form,
         method: &Method,
+        sky: Option<Arc<SkySource>>,
         row_done: &(dyn Fn() + Sync),
         body: impl FnOnce(&FrameSource<'_>) -> T,
     ) -> T {
         let draw = |frames: &dyn Frames| body(&FrameSource { frames, form });
         match method {
-            Method::Table(table) => draw(&Curved::new(animation, &table.lookup())),
-            Method::NoTable => draw(&Curved::new(animation, &Exact)),
-            Method::Exact => draw(&RayByRay::new(animation, &Exact, row_done)),
-            Method::Integrate(adaptive) => draw(&RayByRay::new(animation, adaptive, row_done)),
+            Method::Table(table) => draw(&curved(animation, &table.lookup(), sky)),
+            Method::NoTable => draw(&curved(animation, &Exact, sky)),
+            Method::Exact => draw(&ray_by_ray(animation, &Exact, sky, row_done)),
+            Method::Integrate(adaptive) => draw(&ray_by_ray(animation, adaptive, sky, row_done)),
         }
     }
 
@@ -52,6 +58,33 @@ impl FrameSource<'_> {
     }
 }
 
+/// Frames from curves, with the sky where it has been read.
+fn curved<'a, A: SweptAngles>(
+    animation: &'a Animation,
+    angles: &'a A,
+    sky: Option<Arc<SkySource>>,
+) -> Curved<'a, A> {
+    let frames = Curved::new(animation, angles);
+    match sky {
+        Some(sky) => frames.with_sky(sky),
+        None => frames,
+    }
+}
+
+/// Frames whose pixels' rays are followed one by one, with the sky where it has been read.
+fn ray_by_ray<'a, O: Orbits>(
+    animation: &'a Animation,
+    orbits: &'a O,
+    sky: Option<Arc<SkySource>>,
+    row_done: &'a (dyn Fn() + Sync),
+) -> RayByRay<'a, O> {
+    let frames = RayByRay::new(animation, orbits, row_done);
+    match sky {
+        Some(sky) => frames.with_sky(sky),
+        None => frames,
+    }
+}
+
 /// The curves of a scene that needs `needs`, by a method that draws curves.
 pub(super) fn curves(needs: &Needs, method: &Method) -> Isoradials {
     match method {
@@ -65,5 +98,14 @@ pub(super) fn map(curves: &Isoradials, method: &Method) -> RadiusMap {
     match method {
         Method::Table(table) => RadiusMap::new(curves, &table.lookup()),
         _ => RadiusMap::new(curves, &Exact),
+    }
+}
+
+/// The escape curve of a view's radius, by the method that draws curves.
+pub(super) fn escape_curve(view: &View, method: &Method) -> EscapeCurve {
+    let (u0, slope_scale) = (view.u0(), view.slope_scale());
+    match method {
+        Method::Table(table) => EscapeCurve::new(u0, slope_scale, &table.lookup()),
+        _ => EscapeCurve::new(u0, slope_scale, &Exact),
     }
 }

@@ -3,6 +3,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use bytesize::ByteSize;
+
 use super::super::frame_range::FrameRange;
 use super::super::method::Method;
 use super::super::misuse::misuse;
@@ -10,11 +12,12 @@ use super::super::progress::Report;
 use super::super::stdio::print;
 use super::super::threads::start_threads;
 use super::args::RenderArgs;
-use super::{draw, form, options};
-use crate::isoradial::{Isoradials, RadiusMap};
+use super::{draw, form, memory, options, sky};
+use crate::isoradial::{EscapeCurve, Isoradials, RadiusMap};
 use crate::render::Form;
 use crate::render::needs::{Candidate, Needs};
-use crate::scene::{Animation, ImageSize, Scene, View};
+use crate::scene::{Animation, ImageSize, Scene, Sky, StarSource, View};
+use crate::sky::SkySource;
 
 /// Prints what one frame needs.
 ///
@@ -43,7 +46,18 @@ pub(super) fn run(
     let shows_disk = form.needs_map() && scene.disk().is_some();
     let map = shows_disk.then(|| draw::map(&curves, &method));
     let drawn = (&curves, map.as_ref(), form);
-    print(&text(&scene, &needs, drawn, &method, table.as_deref()))?;
+    let mut text = text(&scene, &needs, drawn, &method, table.as_deref());
+    if form.needs_escape(&scene) {
+        let curve = draw::escape_curve(&View::new(&scene), &method);
+        text.push_str(&escape_line(&curve));
+    }
+    if let Some(sky) = scene.sky().filter(|_| form.shows_light()) {
+        let frame = memory::of_frame(scene.image(), form);
+        let source = sky::read(sky, frame, args.max_memory, report)?;
+        text.push_str(&sky_lines(sky, &source));
+    }
+    push_line(&mut text, "not needed", &not_needed(&scene, form));
+    print(&text)?;
     Ok(())
 }
 
@@ -56,9 +70,7 @@ fn text(
     path: Option<&Path>,
 ) -> String {
     let mut text = String::new();
-    let mut line = |label: &str, line: String| {
-        let _ = writeln!(text, "{label:<12}{line}");
-    };
+    let mut line = |label: &str, line: String| push_line(&mut text, label, &line);
     let ImageSize { width, height } = scene.image();
     let tolerance = scene.tolerance();
     line(
@@ -146,24 +158,82 @@ fn text(
             ),
         );
     }
-    line("not needed", not_needed(scene, map.is_some()));
+    text
+}
+
+/// Adds a line to an explanation.
+fn push_line(text: &mut String, label: &str, line: &str) {
+    let _ = writeln!(text, "{label:<12}{line}");
+}
+
+/// The line of the escape curve.
+fn escape_line(curve: &EscapeCurve) -> String {
+    let (octaves, nodes, bytes) = (curve.octaves(), curve.nodes(), curve.bytes());
+    let mut text = String::new();
+    let line = format!("{octaves} octaves towards the critical ray: {nodes} nodes, {bytes} bytes");
+    push_line(&mut text, "escape", &line);
+    text
+}
+
+/// The lines of what a sky holds.
+fn sky_lines(sky: &Sky, source: &SkySource) -> String {
+    let mut text = String::new();
+    if let (Some(file), Some(panorama)) = (&sky.panorama, source.panorama()) {
+        let line = format!(
+            "{}: {} × {} pixels, {} levels, {} of memory",
+            file.path.display(),
+            panorama.width(),
+            panorama.height(),
+            panorama.levels(),
+            ByteSize(panorama.bytes())
+        );
+        push_line(&mut text, "panorama", &line);
+    }
+    if let (Some(stars), Some(field)) = (&sky.stars, source.stars()) {
+        let from = match &stars.source {
+            StarSource::File(file) => file.path.display().to_string(),
+            StarSource::Synthetic { seed, .. } => format!("a random field, seed {seed}"),
+        };
+        let limit = match stars.magnitude_limit {
+            Some(limit) => format!("up to magnitude {limit}"),
+            None => "of all magnitudes".into(),
+        };
+        let count = field.stars.len();
+        push_line(
+            &mut text,
+            "stars",
+            &format!("{from}: {count} stars {limit}"),
+        );
+    }
+    if let Some(step) = source.grid() {
+        let line = format!("a line every {step} degrees of longitude and latitude");
+        push_line(&mut text, "grid", &line);
+    }
     text
 }
 
 /// What the picture does without.
-fn not_needed(scene: &Scene, has_map: bool) -> String {
-    let map = match (has_map, scene.disk()) {
-        (true, _) => "",
-        (false, Some(_)) => {
-            "no map of the radius, since the picture shows only where the disk is; "
+fn not_needed(scene: &Scene, form: Form) -> String {
+    let mut without = vec!["a ray for each pixel"];
+    match (scene.disk().is_some(), form.needs_map()) {
+        (false, _) => without.push("no map of the radius, since there is no disk"),
+        (true, false) => {
+            without.push("no map of the radius, since the picture shows only where the disk is");
         }
-        (false, None) => "no map of the radius, since there is no disk; ",
-    };
-    let effects = match scene.sky() {
-        Some(_) => "spin and thickness",
-        None => "spin, thickness and sky",
-    };
-    format!("a ray for each pixel; {map}{effects} are not modelled")
+        (true, true) => {}
+    }
+    match (scene.sky().is_some(), form.shows_light()) {
+        (false, _) => without.push("no panorama, stars or grid, since there is no sky"),
+        (true, false) => {
+            without.push("no panorama, stars or grid, since the picture shows no light");
+        }
+        (true, true) => {}
+    }
+    if !form.needs_escape(scene) {
+        without.push("no escape curve, since the picture shows nothing of the sky");
+    }
+    without.push("spin and thickness are not modelled");
+    without.join("; ")
 }
 
 /// How far a table moves the edges, and whether that is good enough.

@@ -1,4 +1,4 @@
-//! The limit on the memory of frames. The system grants more memory than it has, and kills the process that uses it, so
+//! The limit on the memory of frames, which the sky shares. The system grants more memory than it has, and kills the process that uses it, so
 //! the limit is checked first.
 
 use std::io;
@@ -54,7 +54,7 @@ pub(super) fn frames_in(allowed: ByteSize, size: ImageSize, form: Form) -> u64 {
 }
 
 /// The memory of a frame, in bytes, at least 1: its pixels and, generously, the file that they become.
-fn of_frame(size: ImageSize, form: Form) -> u64 {
+pub(super) fn of_frame(size: ImageSize, form: Form) -> u64 {
     let pixels = u64::from(size.width) * u64::from(size.height);
     pixels.saturating_mul(2 * form.bytes() as u64).max(1)
 }

@@ -21,6 +21,7 @@ mod png;
 mod run;
 mod run_stats;
 mod sequence;
+mod sky;
 mod summary;
 mod y4m;
 mod yuv;
@@ -30,6 +31,7 @@ use std::io::{self, Write};
 pub(super) use args::RenderArgs;
 pub(super) use output::sequence;
 use plan::Plan;
+pub(super) use sky::files as sky_files;
 
 use super::progress::{ProgressKind, Report};
 use super::stdio::StdoutError;

@@ -86,8 +86,9 @@ pub(super) fn made(file: &[u8], origin: &FrameOrigin) -> bool {
 
 /// An archive that holds only the origin.
 fn begun(origin: &FrameOrigin) -> io::Result<Archive> {
-    let lines = origin.texts().map(|(key, text)| format!("{key}={text}"));
-    let text = lines.join("\n");
+    let lines = origin.texts().into_iter();
+    let lines = lines.map(|(key, text)| format!("{key}={text}"));
+    let text = lines.collect::<Vec<_>>().join("\n");
     let letters: Vec<[u8; 4]> = text
         .chars()
         .map(|letter| u32::from(letter).to_le_bytes())

@@ -7,6 +7,8 @@ pub(super) struct FrameOrigin {
     pub(super) scene: String,
     /// The SHA-256 of the table's file, or the name of the method in place of a table.
     pub(super) table: String,
+    /// The SHA-256 of each of the sky's files, where the frame shows any.
+    pub(super) sky: Option<String>,
     /// The frame's number.
     pub(super) frame: u32,
 }
@@ -27,13 +29,15 @@ impl FrameOrigin {
     }
 
     /// The texts that a file records, as key and text.
-    pub(super) fn texts(&self) -> [(&'static str, String); 4] {
-        [
+    pub(super) fn texts(&self) -> Vec<(&'static str, String)> {
+        let mut texts = vec![
             (SOFTWARE, PROGRAM.into()),
             ("darkness:scene", self.scene.clone()),
             ("darkness:table", self.table.clone()),
             ("darkness:frame", self.frame.to_string()),
-        ]
+        ];
+        texts.extend(self.sky.clone().map(|sky| ("darkness:sky", sky)));
+        texts
     }
 }
 
@@ -46,6 +50,7 @@ pub(super) mod tests {
         FrameOrigin {
             scene: "5c".repeat(32),
             table: "none".into(),
+            sky: None,
             frame,
         }
     }
@@ -65,6 +70,10 @@ pub(super) mod tests {
             },
             FrameOrigin {
                 table: "exact".into(),
+                ..origin.clone()
+            },
+            FrameOrigin {
+                sky: Some("6e".repeat(32)),
                 ..origin.clone()
             },
         ];

@@ -12,10 +12,10 @@ use super::super::writable;
 use super::args::RenderArgs;
 use super::format::Format;
 use super::origin::FrameOrigin;
-use super::{exr, ffmpeg, film, form, memory, npz, output, png, sequence};
+use super::{exr, ffmpeg, film, form, memory, npz, output, png, sequence, sky};
 use crate::render::needs::Needs;
 use crate::render::{Form, Pixels};
-use crate::scene::{Animation, Scene};
+use crate::scene::{Animation, Scene, Sky};
 
 /// Frames to be drawn, and where they go: checked.
 pub(super) struct Plan<'a> {
@@ -31,6 +31,10 @@ pub(super) struct Plan<'a> {
     pub(super) form: Form,
     pub(super) destination: Destination,
     pub(super) needs: Needs,
+    /// The sky, where the frames show its light.
+    pub(super) sky: Option<&'a Sky>,
+    /// What the frames' files record of the sky's files.
+    sky_fingerprint: Option<String>,
     /// The files that are read, by their canonical names.
     pub(super) inputs: Vec<PathBuf>,
 }
@@ -53,6 +57,8 @@ impl<'a> Plan<'a> {
         let needed = needs.table().map(|candidate| candidate.name);
         let mut inputs = vec![(args.scene.clone(), "scene")];
         inputs.extend(args.method.table_path(needed).map(|table| (table, "table")));
+        let sky_files = sky::files(animation.sky());
+        inputs.extend(sky_files.map(|(file, what)| (file.path.clone(), what)));
         for (input, what) in &inputs {
             destination.check_input(input, what, frames)?;
         }
@@ -75,6 +81,9 @@ impl<'a> Plan<'a> {
         for number in numbers {
             animation.check(number)?;
         }
+        let sky = animation.sky().filter(|_| form.shows_light());
+        // Films record nothing.
+        let sky_fingerprint = sky::fingerprint(sky.filter(|_| !format.is_film()))?;
         let plan = Self {
             args,
             animation,
@@ -85,6 +94,8 @@ impl<'a> Plan<'a> {
             form,
             destination,
             needs,
+            sky,
+            sky_fingerprint,
             inputs,
         };
         Ok((plan, checked))
@@ -133,6 +144,7 @@ impl<'a> Plan<'a> {
         FrameOrigin {
             scene: hex(self.animation.to_toml().as_bytes()),
             table: method.fingerprint(),
+            sky: self.sky_fingerprint.clone(),
             frame: 0,
         }
     }
@@ -140,6 +152,12 @@ impl<'a> Plan<'a> {
     /// An upper bound for the bytes of a frame's file: its pixels as they are, and a little.
     pub(super) fn most_bytes(&self) -> u64 {
         self.pixels() * self.form.bytes() as u64 * 17 / 16 + 8192
+    }
+
+    /// Whether a frame is still to be drawn.
+    pub(super) fn is_unfinished(&self, origin: &FrameOrigin) -> bool {
+        let mut numbers = self.frames.iter();
+        numbers.any(|number| !self.is_finished(number, origin))
     }
 
     /// The number of pixels of a frame.

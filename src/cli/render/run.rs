@@ -3,8 +3,10 @@
 use std::convert::Infallible;
 use std::fs;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
+
+use bytesize::ByteSize;
 
 use super::super::destination::Destination;
 use super::super::interrupt::Interrupt;
@@ -18,11 +20,14 @@ use super::memory;
 use super::origin::FrameOrigin;
 use super::plan::Plan;
 use super::run_stats::RunStats;
-use super::sequence;
+use super::{sequence, sky};
+use crate::sky::SkySource;
 
 /// What a run did.
 pub(super) struct Outcome {
     pub(super) stats: RunStats,
+    /// What reading the sky took, where it was read.
+    pub(super) reading_sky: Option<Duration>,
     /// From the first frame to the last.
     pub(super) elapsed: Duration,
     pub(super) interrupt: Interrupt,
@@ -40,9 +45,15 @@ pub(super) fn run(plan: &Plan<'_>, method: &Method, report: Report) -> anyhow::R
             rows.inc(1);
         }
     };
+    let origin = plan.origin(method);
     let start = Instant::now();
-    let stats = FrameSource::with(plan.animation, plan.form, method, &row_done, |frames| {
-        let origin = plan.origin(method);
+    let sky = read_sky(plan, &origin, report)?;
+    let reading_sky = sky.as_ref().map(|_| start.elapsed());
+    let sky_bytes = sky.as_ref().map_or(0, |sky| sky::bytes(sky));
+    let most_memory = ByteSize(plan.args.max_memory.as_u64().saturating_sub(sky_bytes));
+    let start = Instant::now();
+    let (animation, form) = (plan.animation, plan.form);
+    let stats = FrameSource::with(animation, form, method, sky, &row_done, |frames| {
         if let Destination::Sequence(pattern) = &plan.destination {
             prepare(plan, pattern, frames, &origin)?;
         }
@@ -54,6 +65,7 @@ pub(super) fn run(plan: &Plan<'_>, method: &Method, report: Report) -> anyhow::R
             plan,
             frames,
             origin,
+            most_memory,
             progress: report.frames(kind, plan.count, plan.pixels()),
             stats: RunStats::default(),
             interrupt: &interrupt,
@@ -70,9 +82,27 @@ pub(super) fn run(plan: &Plan<'_>, method: &Method, report: Report) -> anyhow::R
     })?;
     Ok(Outcome {
         stats,
+        reading_sky,
         elapsed: start.elapsed(),
         interrupt,
     })
+}
+
+/// Reads the sky, where a frame is to be drawn that shows its light.
+///
+/// # Errors
+/// Those of [`sky::read`].
+fn read_sky(
+    plan: &Plan<'_>,
+    origin: &FrameOrigin,
+    report: Report,
+) -> anyhow::Result<Option<Arc<SkySource>>> {
+    let Some(sky) = plan.sky.filter(|_| plan.is_unfinished(origin)) else {
+        return Ok(None);
+    };
+    let frame = memory::of_frame(plan.first.image(), plan.form);
+    let source = sky::read(sky, frame, plan.args.max_memory, report)?;
+    Ok(Some(Arc::new(source)))
 }
 
 /// Makes the folder of a sequence, and checks that there is room for its files.
@@ -120,6 +150,8 @@ struct Run<'a> {
     plan: &'a Plan<'a>,
     frames: &'a FrameSource<'a>,
     origin: FrameOrigin,
+    /// What the frames drawn at a time may take.
+    most_memory: ByteSize,
     progress: FrameProgress,
     stats: RunStats,
     interrupt: &'a Interrupt,
@@ -137,7 +169,7 @@ impl Run<'_> {
             .frames
             .iter()
             .take_while(|_| !self.interrupt.is_asked());
-        let at_a_time = memory::frames_in(plan.args.max_memory, plan.first.image(), plan.form);
+        let at_a_time = memory::frames_in(self.most_memory, plan.first.image(), plan.form);
         self.frames
             .draw_all(numbers, plan.count, at_a_time, wanted, done)
     }

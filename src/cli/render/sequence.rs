@@ -29,7 +29,7 @@ pub(super) fn write(path: &Path, bytes: &[u8], inputs: &[PathBuf]) -> io::Result
     let is_link = fs::symlink_metadata(path).is_ok_and(|kind| kind.is_symlink());
     if is_link && fs::canonicalize(path).is_ok_and(|led_to| inputs.contains(&led_to)) {
         return Err(io::Error::other(
-            "the file is a link to the scene or the table that is read",
+            "the file is a link to a file that is read",
         ));
     }
     let mut unfinished = Unfinished::new(path)?;

@@ -1,7 +1,6 @@
 //! The report after a run: what was drawn, how accurate it is, and what it took.
 
 use std::io::{self, Write};
-use std::time::Duration;
 
 use super::super::destination::Destination;
 use super::super::method::Method;
@@ -26,7 +25,7 @@ pub(super) fn report(
     if drawn > 0 {
         report_errors(plan, counts, report);
         if plan.args.timings {
-            print_timings(counts, outcome.elapsed);
+            print_timings(counts, outcome);
         }
     }
     let finished = drawn + kept;
@@ -115,13 +114,14 @@ fn report_errors(plan: &Plan<'_>, counts: &Counts, report: Report) {
     }
 }
 
-/// Prints the times of the parts of the work, summed over all threads.
-fn print_timings(counts: &Counts, elapsed: Duration) {
-    let mut lines: Vec<_> = ["curves", "render", "encode", "write"]
+/// Prints the times of the parts of the work, those of frames summed over all threads.
+fn print_timings(counts: &Counts, outcome: &Outcome) {
+    let sky = outcome.reading_sky.map(|time| ("reading the sky", time));
+    let frames = ["curves", "render", "encode", "write"]
         .into_iter()
-        .zip(counts.times)
-        .collect();
-    lines.push(("all, from the first frame to the last", elapsed));
+        .zip(counts.times);
+    let all = ("all, from the first frame to the last", outcome.elapsed);
+    let lines = sky.into_iter().chain(frames).chain([all]);
     let mut stderr = io::stderr();
     for (name, time) in lines {
         let _ = writeln!(stderr, "{:>10}  {name}", duration(time));

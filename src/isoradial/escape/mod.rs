@@ -163,6 +163,11 @@ impl EscapeCurve {
         size_of_val(self.octaves.as_slice())
     }
 
+    /// Returns the number of octaves of the distance to the critical ray that have a polynomial.
+    pub fn octaves(&self) -> usize {
+        self.octaves.len()
+    }
+
     /// Returns the number of nodes.
     pub fn nodes(&self) -> usize {
         self.octaves.len() * COEFFICIENTS

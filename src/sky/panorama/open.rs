@@ -70,7 +70,10 @@ fn read(path: &Path, scale: f64, max_bytes: u64) -> Result<MipLevel, PanoramaPro
     match format {
         Some(ImageFormat::OpenExr) => return read_exr(reader.into_inner(), scale, max_bytes),
         // The decoder holds all of a JPEG file, and all lines of a Radiance file's header.
-        Some(ImageFormat::Jpeg) => check_memory(metadata.len(), max_bytes)?,
+        Some(ImageFormat::Jpeg) => {
+            check_memory(metadata.len(), max_bytes)?;
+            check_jpeg_end(path)?;
+        }
         Some(ImageFormat::Hdr) => {
             let mut file = reader.into_inner();
             check_hdr_header(&mut file)?;
@@ -222,6 +225,18 @@ fn read_exr(
         .from_chunks(reader)
         .map_err(undecodable)?;
     Ok(MipLevel::new(height, image.layer_data.channel_data.pixels))
+}
+
+/// Checks that a JPEG file's last scan ends: the decoder fills with grey what a file that was cut short lacks.
+fn check_jpeg_end(path: &Path) -> Result<(), PanoramaProblem> {
+    // Within a scan no other byte than 0 or a restart marker follows 0xFF.
+    let file = fs::read(path)?;
+    let scan = file.windows(2).rposition(|pair| pair == [0xFF, 0xDA]);
+    let is_whole =
+        scan.is_some_and(|scan| file[scan..].windows(2).any(|pair| pair == [0xFF, 0xD9]));
+    is_whole
+        .then_some(())
+        .ok_or_else(|| undecodable("the file ends early"))
 }
 
 /// Checks that a Radiance file's header ends, by an empty line, before it takes much memory. Leaves the file at its
