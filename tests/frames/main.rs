@@ -40,6 +40,8 @@ mod photon_rings;
 mod renderer;
 mod sky_directions;
 mod sky_panorama;
+mod sky_stars;
+mod sky_views;
 mod symmetry;
 mod without_disk;
 mod zoomed_edges;

@@ -7,8 +7,9 @@
 //!
 //! # Light
 //! An image is magnified by `|sin ψ dψ/(sin Φ dΦ)|` in solid angle, and its irradiance with it, since lensing keeps
-//! radiance. Straight before and behind the hole that would be infinite. There a star of angular radius ρ is seen as a
-//! ring of the area `2π sin ψ ρ/|dΦ/dψ|` for each order, so that the magnification is at most `2 sin ψ/(ρ |dΦ/dψ|)`.
+//! radiance. That is infinite straight behind the hole, and straight before it for all orders but the first. There a
+//! star of angular radius ρ is seen as a ring of the area `2π sin ψ ρ/|dΦ/dψ|` for each order, so that the
+//! magnification is at most `2 sin ψ/(ρ |dΦ/dψ|)`.
 //!
 //! An image falls on the square of one pixel, centred on its place, and each pixel gets its share of the irradiance over
 //! its own solid angle. So the sum over pixels does not depend on where between them the image falls.
@@ -217,7 +218,9 @@ impl StarView<'_> {
             let magnification = if angle < AXIS {
                 1.0 / (image.rate * image.rate)
             } else {
-                image.magnification(spread)
+                // Nothing diverges straight before the hole but for rays that have turned about it.
+                let is_plain = order == 0 && along > 0.0;
+                image.magnification(if is_plain { sine } else { spread })
             };
             if brightest * magnification < FAINTEST {
                 continue;
