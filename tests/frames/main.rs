@@ -39,6 +39,8 @@ mod outline;
 mod photon_rings;
 mod renderer;
 mod sky_directions;
+mod sky_extremes;
+mod sky_footprints;
 mod sky_panorama;
 mod sky_stars;
 mod sky_views;

@@ -137,7 +137,7 @@ fn steady(
         let across = direction - p * direction.dot(p);
         let theta = libm::atan2(across.length(), direction.dot(p));
         let turns = TAU * f64::from(order / 2);
-        let (angle, side) = if order % 2 == 0 {
+        let (angle, side) = if order.is_multiple_of(2) {
             (turns + theta, across.normalize())
         } else {
             (turns + TAU - theta, -across.normalize())
@@ -291,7 +291,12 @@ fn images_are_where_exact_rays_say_and_as_bright() {
             for _ in 0..25 {
                 // Uniform over the sky.
                 let theta = libm::acos(1.0 - 2.0 * random.next());
-                let angle = f64::from(order) * PI + if order % 2 == 0 { theta } else { PI - theta };
+                let angle = f64::from(order) * PI
+                    + if order.is_multiple_of(2) {
+                        theta
+                    } else {
+                        PI - theta
+                    };
                 let image = image(&rays, position, angle, TAU * random.next());
                 let from_axis = theta.min(PI - theta) / rays.rate(image.psi);
                 let side = (0.1 * (image.psi - rays.critical))

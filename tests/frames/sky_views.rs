@@ -12,7 +12,7 @@ use darkness::scene::{Camera, ImageSize, Layer, LayerSet, Scene, Sky, View};
 use darkness::sky::SkySource;
 use glam::DVec3;
 
-/// A repeatable sequence of numbers from 0 to 1 (SplitMix64).
+/// A repeatable sequence of numbers from 0 to 1 (`SplitMix64`).
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
@@ -25,12 +25,12 @@ impl Random {
     }
 }
 
-/// A camera in an oblique place at a radius.
+/// An oblique place at a radius.
 pub(crate) fn position(radius: f64) -> DVec3 {
     DVec3::new(0.62, -0.53, 0.41).normalize() * radius
 }
 
-/// The scene of a camera at a place that looks in a direction, its picture `side` radians high for each pixel.
+/// The scene of a camera at a place that looks in a direction.
 pub(crate) fn looking(
     position: DVec3,
     towards: DVec3,
@@ -53,7 +53,7 @@ pub(crate) fn light(renderer: &mut Renderer<impl SweptAngles>, scene: &Scene) ->
     planes[0].values.as_chunks::<3>().0.to_vec()
 }
 
-/// The same with what a sky holds, by another table or method for each call.
+/// The same before what a sky holds.
 pub(crate) fn light_of<A: SweptAngles>(
     renderer: Renderer<A>,
     scene: &Scene,

@@ -28,6 +28,9 @@ use crate::sky::{Star, StarColours, StarField};
 /// code of 16 bits.
 const FAINTEST: f64 = 5e-7;
 
+/// Brighter images count as this bright, so that sums of 32 bits stay finite.
+const BRIGHTEST: f64 = 1e30;
+
 /// Nearer than this to straight before the hole, in radians, the magnification is that on the axis.
 const AXIS: f64 = 1e-7;
 
@@ -225,14 +228,14 @@ impl StarView<'_> {
             if brightest * magnification < FAINTEST {
                 continue;
             }
-            let scale = (magnification / projection.solid_angle) as f32;
+            let scale = magnification / projection.solid_angle;
             let (left, above) = ((column - 0.5).floor(), (row - 0.5).floor());
             splats.push(Splat {
                 column: left as i32,
                 row: above as i32,
                 right: (column - 0.5 - left) as f32,
                 down: (row - 0.5 - above) as f32,
-                light: light.map(|c| c * scale),
+                light: light.map(|c| (f64::from(c) * scale).clamp(-BRIGHTEST, BRIGHTEST) as f32),
             });
         }
     }
