@@ -70,28 +70,30 @@ impl<'a> SkyPainter<'a> {
             (1.0, 0.0)
         };
         let (parts_out, parts_around) = self.parts((x, y));
+        let mean = |part: (f64, f64)| {
+            let sight = self.shader.at(part)?;
+            let footprint = self.shader.footprint(&sight);
+            let out = footprint.along_x * across + footprint.along_y * down;
+            let around = footprint.along_y * across - footprint.along_x * down;
+            let (u, v) = place(sight.direction);
+            Some(self.backdrop.mean(
+                [u as f32, v as f32],
+                place_change(sight.direction, out / parts_out as f64),
+                place_change(sight.direction, around / parts_around as f64),
+            ))
+        };
         let (mut sum, mut count) = ([0.0; 3], 0.0);
         let offset = |i: usize, parts: usize| (i as f64 + 0.5) / parts as f64 - 0.5;
         for i in 0..parts_out {
             let out = offset(i, parts_out);
             for j in 0..parts_around {
                 let around = offset(j, parts_around);
-                let part = (
+                let Some(mean) = mean((
                     x + out * across - around * down,
                     y + out * down + around * across,
-                );
-                let Some(sight) = self.shader.at(part) else {
+                )) else {
                     continue;
                 };
-                let footprint = self.shader.footprint(&sight);
-                let out = footprint.along_x * across + footprint.along_y * down;
-                let around = footprint.along_y * across - footprint.along_x * down;
-                let (u, v) = place(sight.direction);
-                let mean = self.backdrop.mean(
-                    [u as f32, v as f32],
-                    place_change(sight.direction, out / parts_out as f64),
-                    place_change(sight.direction, around / parts_around as f64),
-                );
                 for (sum, c) in sum.iter_mut().zip(mean) {
                     *sum += c;
                 }
@@ -99,7 +101,9 @@ impl<'a> SkyPainter<'a> {
             }
         }
         if count == 0.0 {
-            return [0.0; 3];
+            // The sky is seen in the corner farthest from the shadow alone.
+            let corner = (x + 0.5_f64.copysign(across), y + 0.5_f64.copysign(down));
+            (sum, count) = (mean(corner).unwrap_or_default(), 1.0);
         }
         let share = seen as f32 / count;
         sum.map(|c| c * share)

@@ -7,8 +7,9 @@
 //!
 //! # Light
 //! An image is magnified by `|sin ψ dψ/(sin Φ dΦ)|` in solid angle, and its irradiance with it, since lensing keeps
-//! radiance. Straight before and behind the hole that would be infinite. There a star of angular radius ρ is seen as a
-//! ring of the area `2π sin ψ ρ/|dΦ/dψ|` for each order, so that the magnification is at most `2 sin ψ/(ρ |dΦ/dψ|)`.
+//! radiance. That is infinite straight behind the hole, and straight before it for all orders but the first. There a
+//! star of angular radius ρ is seen as a ring of the area `2π sin ψ ρ/|dΦ/dψ|` for each order, so that the
+//! magnification is at most `2 sin ψ/(ρ |dΦ/dψ|)`.
 //!
 //! An image falls on the square of one pixel, centred on its place, and each pixel gets its share of the irradiance over
 //! its own solid angle. So the sum over pixels does not depend on where between them the image falls.
@@ -26,6 +27,9 @@ use crate::sky::{Star, StarColours, StarField};
 /// Images whose pixels would be fainter than this are left out, and all higher orders with them: it is half of the first
 /// code of 16 bits.
 const FAINTEST: f64 = 5e-7;
+
+/// Brighter images count as this bright, so that sums of 32 bits stay finite.
+const BRIGHTEST: f64 = 1e30;
 
 /// Nearer than this to straight before the hole, in radians, the magnification is that on the axis.
 const AXIS: f64 = 1e-7;
@@ -217,19 +221,21 @@ impl StarView<'_> {
             let magnification = if angle < AXIS {
                 1.0 / (image.rate * image.rate)
             } else {
-                image.magnification(spread)
+                // Nothing diverges straight before the hole but for rays that have turned about it.
+                let is_plain = order == 0 && along > 0.0;
+                image.magnification(if is_plain { sine } else { spread })
             };
             if brightest * magnification < FAINTEST {
                 continue;
             }
-            let scale = (magnification / projection.solid_angle) as f32;
+            let scale = magnification / projection.solid_angle;
             let (left, above) = ((column - 0.5).floor(), (row - 0.5).floor());
             splats.push(Splat {
                 column: left as i32,
                 row: above as i32,
                 right: (column - 0.5 - left) as f32,
                 down: (row - 0.5 - above) as f32,
-                light: light.map(|c| c * scale),
+                light: light.map(|c| (f64::from(c) * scale).clamp(-BRIGHTEST, BRIGHTEST) as f32),
             });
         }
     }
