@@ -321,7 +321,7 @@ fn a_batch_with_a_sky_that_is_killed_and_run_again_gives_the_same_files() {
     let here = folder.path();
     fs::write(
         here.join("moving.toml"),
-        MOVING.replace("frames = 6", "frames = 60"),
+        MOVING.replace("frames = 6", "frames = 30"),
     )
     .unwrap();
     let begun = Instant::now();

@@ -33,7 +33,12 @@ fn prepared() -> TempDir {
 
 /// Runs the program with at most 1 GB of address space, and for at most a minute.
 fn limited(here: &Path, line: &str) -> Output {
-    let line = format!("ulimit -v 1000000; exec timeout 60 '{PROGRAM}' {line}");
+    limited_to(1_000_000, here, line)
+}
+
+/// Runs the program with at most so many KiB of address space.
+fn limited_to(kibibytes: u32, here: &Path, line: &str) -> Output {
+    let line = format!("ulimit -v {kibibytes}; exec timeout 60 '{PROGRAM}' {line}");
     let mut command = Command::new("sh");
     command.current_dir(here).env_remove("DARKNESS_TABLE");
     command.args(["-c", &line]).output().unwrap()
@@ -267,4 +272,19 @@ fn a_sky_that_needs_more_memory_than_is_allowed_is_refused() {
     .unwrap();
     let words = ["100000 stars take", "of memory", "--max-memory"];
     is_refused(here, "r.toml", "--max-memory 1MB", 2, &words);
+}
+
+/// A panorama for which the system has no memory is refused too.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_panorama_that_the_system_has_no_memory_for_is_refused() {
+    let folder = prepared();
+    let here = folder.path();
+    RgbImage::new(8192, 4096)
+        .save(here.join("sky.png"))
+        .unwrap();
+    for kibibytes in (200_000..=500_000).step_by(50_000) {
+        let output = limited_to(kibibytes, here, "render p.toml -o a.raw --threads 2");
+        fails(&output, 1, &["panorama sky.png", "out of memory"]);
+    }
 }

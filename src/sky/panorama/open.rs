@@ -2,7 +2,7 @@
 
 use std::error::Error;
 use std::fs::{self, File};
-use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use exr::block::reader::Reader as ExrReader;
@@ -263,9 +263,15 @@ fn checked_height(width: u64, height: u64) -> Result<usize, PanoramaProblem> {
     }
 }
 
+/// Checks that so many bytes are allowed, and that the system grants them: an allocation that fails ends the process.
 fn check_memory(needed: u64, allowed: u64) -> Result<(), PanoramaProblem> {
     if needed > allowed {
         return Err(PanoramaProblem::Memory { needed, allowed });
+    }
+    let granted = usize::try_from(needed)
+        .is_ok_and(|needed| Vec::<u8>::new().try_reserve_exact(needed).is_ok());
+    if !granted {
+        return Err(io::Error::from(io::ErrorKind::OutOfMemory).into());
     }
     Ok(())
 }
