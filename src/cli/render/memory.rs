@@ -1,5 +1,5 @@
-//! The limit on the memory of frames, which the sky shares. The system grants more memory than it has, and kills the process that uses it, so
-//! the limit is checked first.
+//! The limit on the memory of frames, which the sky shares. The system grants more memory than it has, and kills the
+//! process that uses it, so the limit is checked first.
 
 use std::io;
 
