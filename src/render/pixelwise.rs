@@ -9,7 +9,9 @@ use super::error::{RenderError, blank};
 use super::frame::Threads;
 use super::ink::{Averaging, Colours, Data, Ink, PlaneRows, amplitude};
 use super::planes::Target;
+use super::shaded::ROWS_OF_BAND;
 use super::sky::{FrameSky, SkyShader, SkySight, StarImages};
+use super::tiles::Run;
 use crate::isoradial::Escape;
 use crate::light::{Sight, SightGeometry};
 use crate::orbit::integrate::FixedStep;
@@ -91,52 +93,76 @@ impl<O: Orbits> Frame<'_, O> {
             Target::Planes(planes, layers) => {
                 let data = Data::new(layers, self.colours, self.scene, Averaging::Centre)?;
                 let width = self.view.width() as usize;
-                let rows = PlaneRows::bands(planes, width, 1);
+                let bands = PlaneRows::bands(planes, width, ROWS_OF_BAND);
                 let stars = self.stars();
-                rows.enumerate().par_bridge().try_for_each(|(j, mut row)| {
-                    data.clear(&mut row, 0, (0, width));
-                    let light = self.sky_row(&stars, j);
-                    for i in 0..width {
-                        let place = (i as u32, j as u32);
-                        if let Some(sight) = sight(self.scene, self.view, self.orbits, place)? {
-                            data.set_sight(&mut row, i, &sight);
-                            continue;
-                        }
-                        let is_captured = self.is_captured(place)?;
-                        Data::set_hidden(&mut row, i, is_captured);
-                        data.put_light(&mut row, 0, i, &light[i..=i]);
-                        if let Some(sky) = self.sky.filter(|_| !is_captured) {
-                            let sight = self.sky_sight(&sky.shader, place)?;
-                            data.put_direction(&mut row, i, &sky.shader, &sight);
-                        }
+                let bands = bands.enumerate().par_bridge();
+                bands.try_for_each(|(band, mut memory)| {
+                    let (top, light) = self.sky_band(&stars, band);
+                    for (j, light) in light.chunks_exact(width).enumerate() {
+                        self.data_row(&data, &mut memory, (top, j), light)?;
+                        row_done();
                     }
-                    data.finish_sky(&mut row);
-                    row_done();
+                    data.finish_sky(&mut memory);
                     Ok(())
                 })
             }
         }
     }
 
-    /// The images of stars, a band for each row.
+    /// Sets the layers of row j of a band that begins at row `top`.
+    fn data_row(
+        &self,
+        data: &Data<'_>,
+        band: &mut PlaneRows<'_>,
+        (top, j): (usize, usize),
+        light: &[[f32; 3]],
+    ) -> Result<(), RenderError> {
+        let width = light.len();
+        data.clear(band, j, (0, width));
+        for i in 0..width {
+            let place = (i as u32, (top + j) as u32);
+            let pixel = j * width + i;
+            if let Some(sight) = sight(self.scene, self.view, self.orbits, place)? {
+                data.set_sight(band, pixel, &sight);
+                continue;
+            }
+            let is_captured = self.is_captured(place)?;
+            Data::set_hidden(band, pixel, is_captured);
+            data.put_light(band, j, i, &light[i..=i]);
+            if let Some(sky) = self.sky.filter(|_| !is_captured) {
+                let sight = self.sky_sight(&sky.shader, place)?;
+                data.put_direction(band, pixel, &sky.shader, &sight);
+            }
+        }
+        Ok(())
+    }
+
+    /// The images of stars, band by band.
     fn stars(&self) -> StarImages {
         let mut stars = StarImages::default();
         if let Some(sky) = self.sky {
-            sky.find_stars(&mut stars, 1, Threads::All);
+            sky.find_stars(&mut stars, ROWS_OF_BAND, Threads::All);
         }
         stars
     }
 
-    /// The light of the sky in a row, where no disk is before it.
-    fn sky_row(&self, stars: &StarImages, row: usize) -> Vec<[f32; 3]> {
-        let mut light = vec![[0.0; 3]; self.view.width() as usize];
+    /// The first row of a band, and the light of its sky where no disk is before it.
+    fn sky_band(&self, stars: &StarImages, band: usize) -> (usize, Vec<[f32; 3]>) {
+        let (width, height) = (self.view.width(), self.view.height() as usize);
+        let top = band * ROWS_OF_BAND;
+        let rows = ROWS_OF_BAND.min(height - top);
+        let mut light = vec![[0.0; 3]; width as usize * rows];
         if let Some(sky) = self.sky {
-            for (i, light) in light.iter_mut().enumerate() {
-                *light = sky.pixel((i as f64 + 0.5, row as f64 + 0.5));
-            }
-            sky.add_stars(stars, (row, row, 1), &mut light);
+            let whole = |row| Run {
+                row,
+                from: 0,
+                to: width,
+            };
+            let runs: Vec<Run> = (0..rows as u32).map(whole).collect();
+            sky.paint((top, rows), &runs, &mut light);
+            sky.add_stars(stars, (band, top, rows), &mut light);
         }
-        light
+        (top, light)
     }
 
     /// Where the ray of a pixel's centre leaves to, by the method.
@@ -169,20 +195,23 @@ impl<O: Orbits> Frame<'_, O> {
         let stars = self.stars();
         let (width, height) = (self.view.width() as usize, self.view.height() as usize);
         let needed = stride * (height - 1) + 3 * width;
-        let rows = samples[..needed].par_chunks_mut(stride).enumerate();
-        rows.try_for_each(|(j, row)| {
-            let light = self.sky_row(&stars, j);
-            let pixels = row[..3 * width].as_chunks_mut::<3>().0;
-            for (i, (samples, light)) in pixels.iter_mut().zip(light).enumerate() {
-                let place = (i as u32, j as u32);
-                *samples = match sight(self.scene, self.view, self.orbits, place)? {
-                    Some(_) if colours.is_white => of_light([1.0; 3]),
-                    Some(sight) => of_amplitude(amplitude(&sight) as f32),
-                    None if self.sky.is_some() => of_light(light),
-                    None => [T::default(); 3],
-                };
+        let bands = samples[..needed].par_chunks_mut(stride * ROWS_OF_BAND);
+        bands.enumerate().try_for_each(|(band, samples)| {
+            let (top, light) = self.sky_band(&stars, band);
+            let rows = samples.chunks_mut(stride).zip(light.chunks_exact(width));
+            for (j, (row, light)) in rows.enumerate() {
+                let pixels = row[..3 * width].as_chunks_mut::<3>().0;
+                for (i, (samples, light)) in pixels.iter_mut().zip(light).enumerate() {
+                    let place = (i as u32, (top + j) as u32);
+                    *samples = match sight(self.scene, self.view, self.orbits, place)? {
+                        Some(_) if colours.is_white => of_light([1.0; 3]),
+                        Some(sight) => of_amplitude(amplitude(&sight) as f32),
+                        None if self.sky.is_some() => of_light(*light),
+                        None => [T::default(); 3],
+                    };
+                }
+                row_done();
             }
-            row_done();
             Ok(())
         })
     }

@@ -370,7 +370,7 @@ fn the_sky_is_explained_and_timed() {
     assert!(told.contains("no panorama, stars or grid, since the picture shows no light"));
     let told = explained(&["stars"]);
     assert!(
-        told.contains("\nstars       a random field, seed 1: 20000 stars"),
+        told.contains("\nstars       a random field, seed 1: 60000 stars"),
         "{told}"
     );
     let told = explained(&["lit"]);

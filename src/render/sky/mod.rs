@@ -92,10 +92,4 @@ impl<'a> FrameSky<'a> {
         }
         self.backdrop.is_some() || self.stars.is_some()
     }
-
-    /// Returns the light of a pixel without stars, its centre at a place.
-    pub(super) fn pixel(&self, place: (f64, f64)) -> [f32; 3] {
-        let pixel = |backdrop| SkyPainter::new(self.shader, backdrop).pixel(place);
-        self.backdrop.as_ref().map_or([0.0; 3], pixel)
-    }
 }
