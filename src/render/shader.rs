@@ -193,6 +193,11 @@ impl<'a> Shader<'a> {
         shadow::share(self.view, self.curves.critical(), place)
     }
 
+    /// Returns whether the hole's shadow covers a place.
+    pub(super) fn shadow_covers(&self, place: (f64, f64)) -> bool {
+        shadow::covers(self.view, self.curves.critical(), place)
+    }
+
     /// Returns the order that is told of what the curves call `order`, along a ray.
     ///
     /// They differ where the camera is in the disk's plane: rays towards one side of the hole meet it at `kπ`, those

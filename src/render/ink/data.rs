@@ -262,10 +262,9 @@ fn add_shadow(
     for (i, alpha) in alpha.iter_mut().enumerate() {
         if *alpha == 0.0 {
             let place = ((i % width) as f64 + 0.5, (top + i / width) as f64 + 0.5);
-            let share = shader.shadow(place);
             *alpha = match averaging {
-                Averaging::Square => share as f32,
-                Averaging::Centre => f32::from(u8::from(share >= 0.5)),
+                Averaging::Square => shader.shadow(place) as f32,
+                Averaging::Centre => f32::from(u8::from(shader.shadow_covers(place))),
             };
         }
     }
