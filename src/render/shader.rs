@@ -188,15 +188,14 @@ impl<'a> Shader<'a> {
         front(self.view, self.curves, place)
     }
 
-    /// Whether the ray of a place falls in.
-    pub(super) fn is_captured(&self, place: (f64, f64)) -> bool {
-        let PlaceRay { ray, s, .. } = self.ray(place);
-        ray.z - self.curves.critical() * s > 0.0
-    }
-
     /// Returns the share of a pixel's square that the hole's shadow covers, the pixel's centre at a place.
     pub(super) fn shadow(&self, place: (f64, f64)) -> f64 {
         shadow::share(self.view, self.curves.critical(), place)
+    }
+
+    /// Returns whether the hole's shadow covers a place.
+    pub(super) fn shadow_covers(&self, place: (f64, f64)) -> bool {
+        shadow::covers(self.view, self.curves.critical(), place)
     }
 
     /// Returns the order that is told of what the curves call `order`, along a ray.

@@ -47,7 +47,13 @@ pub(super) fn share(view: &View, critical: f64, (x, y): (f64, f64)) -> f64 {
     }
 }
 
-/// Returns the same as the mean over lines across the edge, upright or level ones, on each of which it is exact.
+/// Returns whether the shadow covers a place.
+pub(super) fn covers(view: &View, critical: f64, (x, y): (f64, f64)) -> bool {
+    let ray = view.ray_at(view.x_at(x), view.y_at(y));
+    ray.z >= critical * ray.transverse()
+}
+
+/// Returns the share of a pixel as the mean over lines across the edge, upright or level ones, on each of which it is exact.
 fn bent_share(view: &View, critical: f64, (x, y): (f64, f64), upright: bool) -> f64 {
     let along = [view.z(), view.ta(), view.tb()].map(|affine| {
         let slope = if upright { -affine.per_y } else { affine.per_x };

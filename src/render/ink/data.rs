@@ -264,7 +264,7 @@ fn add_shadow(
             let place = ((i % width) as f64 + 0.5, (top + i / width) as f64 + 0.5);
             *alpha = match averaging {
                 Averaging::Square => shader.shadow(place) as f32,
-                Averaging::Centre => f32::from(u8::from(shader.is_captured(place))),
+                Averaging::Centre => f32::from(u8::from(shader.shadow_covers(place))),
             };
         }
     }

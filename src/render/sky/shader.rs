@@ -21,7 +21,7 @@ use crate::scene::{Affine, PixelRay, Scene, View};
 use crate::sky::Orientation;
 
 /// Closer than this to straight away from the hole, as a sine, all directions about it change alike.
-const AXIS: f64 = 1e-6;
+const AXIS: f64 = 1e-7;
 
 /// The least squared sine of a place's distance from a pole: its longitude changes without bound there.
 const POLE: f64 = 1e-24;
@@ -150,7 +150,12 @@ impl<'a> SkyShader<'a> {
     /// Returns how much the angle swept changes from pixel to pixel, at most: `|dΦ/dψ| |∇ψ|`. Beside the shadow this is
     /// the inverse of the distance from its edge, in pixels.
     pub(super) fn swept_per_pixel(&self, sight: &SkySight) -> f64 {
-        let (x, y) = self.outward(sight);
+        // Straight away from the hole ψ grows alike in all directions.
+        let (x, y) = if sight.s > 0.0 {
+            self.outward(sight)
+        } else {
+            (self.view.pixel_side() / sight.ray.z, 0.0)
+        };
         sight.escape.rate * (x * x + y * y).sqrt()
     }
 
@@ -183,3 +188,6 @@ pub(super) fn place_change(direction: DVec3, change: DVec3) -> [f32; 2] {
     let latitude = change.z * across - direction.z * outward;
     [(-longitude / TAU) as f32, (latitude / PI) as f32]
 }
+
+#[cfg(test)]
+mod tests;
