@@ -160,7 +160,9 @@ impl<O: Orbits> Frame<'_, O> {
             };
             let runs: Vec<Run> = (0..rows as u32).map(whole).collect();
             sky.paint((top, rows), &runs, &mut light);
-            sky.add_stars(stars, (band, top, rows), &mut light);
+            if sky.has_stars() {
+                stars.add(self.view, (band, top, rows), &mut light);
+            }
         }
         (top, light)
     }

@@ -14,7 +14,7 @@ use super::scene_frame::{FrameReport, SceneFrame};
 use super::sky::{FrameSky, SharedSky, SkyAtRadius};
 use crate::isoradial::{CurveSpec, Isoradials, RadiusMap};
 use crate::orbit::path::SweptAngles;
-use crate::scene::{Animation, LayerSet, Light, Scene, Sky, Stars, Tone, View};
+use crate::scene::{Animation, LayerSet, Light, Scene, Sky, Tone, View};
 use crate::sky::SkySource;
 use crate::table::{Lookup, Table};
 
@@ -49,8 +49,8 @@ pub struct Renderer<A> {
     curves: Option<Isoradials>,
     /// Their map, once a scene has needed it.
     map: Option<RadiusMap>,
-    /// The sky at their radius, once a scene has needed it, for these stars.
-    sky: Option<(Option<Stars>, SkyAtRadius)>,
+    /// The sky at their radius, once a scene has needed it, and whether that was for its light.
+    sky: Option<(bool, SkyAtRadius)>,
     /// The sky of the scene before, and what its files hold.
     source: (Option<Sky>, SharedSky),
     /// Light, exposure and tone of the scene before, and their colours.
@@ -203,18 +203,15 @@ impl<A: SweptAngles> Renderer<A> {
         }
         if self.source.0.as_ref() != scene.sky() {
             self.source = (scene.sky().cloned(), SharedSky::default());
+            self.sky = None;
         }
         let source = self.source.1.source(scene, form)?;
         let sky = if form.needs_escape(scene) {
-            let stars = scene.sky().and_then(|sky| sky.stars.as_ref());
-            if self
-                .sky
-                .as_ref()
-                .is_some_and(|(of, _)| of.as_ref() != stars)
-            {
+            let has_light = source.is_some();
+            if self.sky.as_ref().is_some_and(|(had, _)| has_light && !had) {
                 self.sky = None;
             }
-            let new = || (stars.cloned(), SkyAtRadius::new(scene, view, angles));
+            let new = || (has_light, SkyAtRadius::new(scene, view, source, angles));
             let (_, radius) = self.sky.get_or_insert_with(new);
             Some(FrameSky::at_radius(radius, scene, view, source))
         } else {

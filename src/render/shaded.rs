@@ -49,8 +49,9 @@ struct ShadedScratch {
     free: Vec<Run>,
     /// Pixels whose centres see the sky, for data of it.
     centres: Vec<Run>,
-    /// The sky's light.
+    /// The sky's light, and whether all of it is 0.
     light: Vec<[f32; 3]>,
+    is_dark: bool,
 }
 
 /// No order, in [`ShadedScratch::orders`].
@@ -116,6 +117,7 @@ impl<'a> ShadedFrame<'a> {
                 let outlines = is_meaningful.then_some(outlines);
                 scratch.find_orders(outlines, band, rows, &painter);
                 painter.clear(rows, &mut memory);
+                scratch.paint_stars(rows, &painter, sky.as_ref(), &mut memory);
                 scratch.free.clear();
                 let width = view.width() as usize;
                 for (row, orders) in scratch.orders.chunks_exact(width).enumerate() {
@@ -129,6 +131,7 @@ impl<'a> ShadedFrame<'a> {
                     ink.put_directions(&mut memory, &sky.sky.shader, (top, rows), &scratch.free);
                 }
             }
+            scratch.darken(rows, &painter, sky.as_ref());
             ink.finish(&mut memory, shader, top);
         });
     }
@@ -173,6 +176,7 @@ impl ShadedScratch {
         self.partial.clear();
         self.covered.clear();
         painter.clear(rows, memory);
+        self.paint_stars(rows, painter, sky, memory);
         for (order, outline) in outlines {
             self.runs.clear();
             outline.draw(band, &mut self.band);
@@ -194,6 +198,7 @@ impl ShadedScratch {
         let width = painter.shader.view.width() as usize;
         let beside = |row: usize, column: usize| {
             let light = self.light.get(row * width + column);
+            let sky = sky.filter(|sky| sky.sky.shines());
             sky.and(light).copied().unwrap_or_default()
         };
         painter.paint_partial(&mut self.partial, &mut self.parts, beside, memory);
@@ -208,7 +213,51 @@ impl ShadedScratch {
         }
     }
 
-    /// Paints the sky beside what the disk covers wholly.
+    /// Paints the stars of a sky that nothing fills: before the disk, which hides them.
+    fn paint_stars<I: Ink<N>, const N: usize>(
+        &mut self,
+        rows: usize,
+        painter: &Painter<'_, I, N>,
+        sky: Option<&BandSky<'_>>,
+        memory: &mut I::Band<'_>,
+    ) {
+        let Some(sky) = sky.filter(|sky| sky.sky.has_stars() && !sky.sky.is_filled()) else {
+            return;
+        };
+        let view = painter.shader.view;
+        let width = view.width() as usize;
+        if !self.is_dark || self.light.len() != width * rows {
+            self.light.clear();
+            self.light.resize(width * rows, [0.0; 3]);
+            self.is_dark = true;
+        }
+        let (light, place) = (&mut self.light, (sky.band, painter.top, rows));
+        sky.stars.add(view, place, light);
+        sky.stars.pixels(view, place, |row, column| {
+            let pixel = row * width + column;
+            painter
+                .ink
+                .put_light(memory, row, column, &light[pixel..=pixel]);
+        });
+    }
+
+    /// Takes the stars out of the light again: most of it is dark all the time.
+    fn darken<I, const N: usize>(
+        &mut self,
+        rows: usize,
+        painter: &Painter<'_, I, N>,
+        sky: Option<&BandSky<'_>>,
+    ) {
+        if let Some(sky) = sky.filter(|_| self.is_dark) {
+            let (view, place) = (painter.shader.view, (sky.band, painter.top, rows));
+            let light = &mut self.light;
+            sky.stars.pixels(view, place, |row, column| {
+                light[row * view.width() as usize + column] = [0.0; 3];
+            });
+        }
+    }
+
+    /// Paints what fills the sky, and stars before it, beside what the disk covers wholly.
     fn paint_sky<I: Ink<N>, const N: usize>(
         &mut self,
         rows: usize,
@@ -216,15 +265,18 @@ impl ShadedScratch {
         sky: &BandSky<'_>,
         memory: &mut I::Band<'_>,
     ) {
-        let (view, top) = (painter.shader.view, painter.top);
-        let width = view.width() as usize;
-        self.light.clear();
-        self.light.resize(width * rows, [0.0; 3]);
-        if !sky.sky.paint((top, rows), &self.free, &mut self.light) {
+        if !sky.sky.is_filled() {
             return;
         }
-        sky.sky
-            .add_stars(sky.stars, (sky.band, top, rows), &mut self.light);
+        let (view, top) = (painter.shader.view, painter.top);
+        let width = view.width() as usize;
+        self.is_dark = false;
+        self.light.clear();
+        self.light.resize(width * rows, [0.0; 3]);
+        sky.sky.paint((top, rows), &self.free, &mut self.light);
+        if sky.sky.has_stars() {
+            sky.stars.add(view, (sky.band, top, rows), &mut self.light);
+        }
         for run in &self.free {
             let (row, from, to) = (run.row as usize, run.from as usize, run.to as usize);
             let light = &self.light[row * width..][from..to];

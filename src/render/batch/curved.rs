@@ -77,7 +77,7 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
         let block = self.block(number);
         let source = self.sky.source(&scene, form)?;
         let (own, own_map, own_sky);
-        let sky = || SkyAtRadius::new(&scene, &view, self.angles);
+        let sky = || SkyAtRadius::new(&scene, &view, source, self.angles);
         let (curves, map, sky) = match block.span(number) {
             Some(span) if span.is_shared() => {
                 let draw = || Isoradials::new(&span.spec, self.angles);

@@ -58,7 +58,7 @@ impl<O: Orbits> Frames for RayByRay<'_, O> {
         let form = memory.form();
         let source = self.sky.source(&scene, form)?;
         let radius = if form.needs_escape(&scene) {
-            let radius = SkyAtRadius::from_orbits(&scene, &view, self.orbits);
+            let radius = SkyAtRadius::from_orbits(&scene, &view, source, self.orbits);
             Some(radius.map_err(RenderError::from)?)
         } else {
             None

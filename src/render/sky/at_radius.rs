@@ -11,20 +11,25 @@ use crate::render::planes::Form;
 use crate::scene::{Scene, View};
 use crate::sky::{DEFAULT_MEMORY, SkySource, StarColours};
 
-/// The escape curve of a camera radius, and the colours of stars there.
+/// The escape curve of a camera radius, and the light of stars there.
 #[derive(Debug)]
 pub(in crate::render) struct SkyAtRadius {
     pub(in crate::render) curve: EscapeCurve,
-    colours: StarColours,
+    /// The irradiance of each star without magnification.
+    lights: Vec<[f32; 3]>,
 }
 
 impl SkyAtRadius {
     /// Computes them from swept angles.
-    pub(in crate::render) fn new(scene: &Scene, view: &View, angles: &impl SweptAngles) -> Self {
-        let curve = EscapeCurve::new(view.u0(), view.slope_scale(), angles);
+    pub(in crate::render) fn new(
+        scene: &Scene,
+        view: &View,
+        source: Option<&SkySource>,
+        angles: &impl SweptAngles,
+    ) -> Self {
         Self {
-            curve,
-            colours: star_colours(scene, view),
+            curve: EscapeCurve::new(view.u0(), view.slope_scale(), angles),
+            lights: star_lights(scene, view, source),
         }
     }
 
@@ -35,20 +40,29 @@ impl SkyAtRadius {
     pub(in crate::render) fn from_orbits(
         scene: &Scene,
         view: &View,
+        source: Option<&SkySource>,
         orbits: &impl Orbits,
     ) -> Result<Self, OrbitError> {
         Ok(Self {
             curve: EscapeCurve::from_orbits(view.u0(), view.slope_scale(), orbits)?,
-            colours: star_colours(scene, view),
+            lights: star_lights(scene, view, source),
         })
     }
 }
 
-/// The colours of a scene's stars for its camera.
-fn star_colours(scene: &Scene, view: &View) -> StarColours {
-    let stars = scene.sky().and_then(|sky| sky.stars.as_ref());
-    let (shift, exposure) = stars.map_or((false, 0.0), |stars| (stars.shift, stars.exposure));
-    StarColours::new(if shift { 1.0 / view.clock_rate() } else { 1.0 }, exposure)
+/// The light of a sky's stars for a scene's camera.
+fn star_lights(scene: &Scene, view: &View, source: Option<&SkySource>) -> Vec<[f32; 3]> {
+    let settings = scene.sky().and_then(|sky| sky.stars.as_ref());
+    let (Some(settings), Some(field)) = (settings, source.and_then(SkySource::stars)) else {
+        return Vec::new();
+    };
+    let shift = if settings.shift {
+        1.0 / view.clock_rate()
+    } else {
+        1.0
+    };
+    let colours = StarColours::new(shift, settings.exposure);
+    field.stars.iter().map(|star| colours.light(star)).collect()
 }
 
 /// The sky of an animation, read when a frame first needs it: it is that of all its frames.
@@ -93,7 +107,7 @@ impl<'a> FrameSky<'a> {
         source: Option<&'a SkySource>,
     ) -> Self {
         match source {
-            Some(source) => Self::new(view, &radius.curve, scene, (source, &radius.colours)),
+            Some(source) => Self::new(view, &radius.curve, scene, (source, &radius.lights)),
             None => Self::dark(view, &radius.curve, scene),
         }
     }

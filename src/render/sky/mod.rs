@@ -21,7 +21,7 @@ use super::frame::Threads;
 use super::tiles::Run;
 use crate::isoradial::EscapeCurve;
 use crate::scene::{Scene, View};
-use crate::sky::{SkySource, StarColours, StarField};
+use crate::sky::{SkySource, StarField};
 use painter::SkyPainter;
 
 /// The sky of one frame.
@@ -46,14 +46,14 @@ impl<'a> FrameSky<'a> {
         view: &'a View,
         curve: &'a EscapeCurve,
         scene: &Scene,
-        (source, colours): (&'a SkySource, &'a StarColours),
+        (source, lights): (&'a SkySource, &'a [[f32; 3]]),
     ) -> Self {
         let shader = SkyShader::new(view, curve, scene);
         let stars = scene.sky().and_then(|sky| sky.stars.as_ref());
         let seen = |field| {
             let seen = StarView {
                 shader,
-                colours,
+                lights,
                 radius: stars.map_or(0.0, |stars| stars.radius),
             };
             (seen, field)
@@ -72,24 +72,25 @@ impl<'a> FrameSky<'a> {
         }
     }
 
-    /// Adds the images of stars to a band's light, given by its number, its first row and its number of rows.
-    pub(super) fn add_stars(
-        &self,
-        images: &StarImages,
-        band: (usize, usize, usize),
-        light: &mut [[f32; 3]],
-    ) {
-        if self.stars.is_some() {
-            images.add(self.shader.view, band, light);
-        }
+    /// Whether there is any light.
+    pub(super) fn shines(&self) -> bool {
+        self.backdrop.is_some() || self.stars.is_some()
     }
 
-    /// Paints runs of a band, given by its first row and its number of rows, into its light. Returns whether there is
-    /// any light, of stars too.
-    pub(super) fn paint(&self, rows: (usize, usize), runs: &[Run], light: &mut [[f32; 3]]) -> bool {
+    /// Whether something fills it: not only stars.
+    pub(super) fn is_filled(&self) -> bool {
+        self.backdrop.is_some()
+    }
+
+    /// Whether there are stars.
+    pub(super) fn has_stars(&self) -> bool {
+        self.stars.is_some()
+    }
+
+    /// Paints what fills the sky into the light of runs of a band, given by its first row and its number of rows.
+    pub(super) fn paint(&self, rows: (usize, usize), runs: &[Run], light: &mut [[f32; 3]]) {
         if let Some(backdrop) = &self.backdrop {
             SkyPainter::new(self.shader, backdrop).paint(rows, runs, light);
         }
-        self.backdrop.is_some() || self.stars.is_some()
     }
 }

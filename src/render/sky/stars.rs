@@ -22,7 +22,7 @@ use super::shader::SkyShader;
 use crate::isoradial::{EscapeCurve, Image};
 use crate::render::frame::Threads;
 use crate::scene::View;
-use crate::sky::{Star, StarColours, StarField};
+use crate::sky::{Star, StarField};
 
 /// Images whose pixels would be fainter than this are left out, and all higher orders with them: it is half of the first
 /// code of 16 bits.
@@ -67,7 +67,8 @@ pub(in crate::render) struct StarImages {
 #[derive(Debug, Clone, Copy)]
 pub(in crate::render) struct StarView<'a> {
     pub(in crate::render) shader: SkyShader<'a>,
-    pub(in crate::render) colours: &'a StarColours,
+    /// The irradiance of each star without magnification.
+    pub(in crate::render) lights: &'a [[f32; 3]],
     /// The angular radius of stars, in radians.
     pub(in crate::render) radius: f64,
 }
@@ -81,21 +82,23 @@ impl StarImages {
         rows: usize,
         threads: Threads,
     ) {
-        let stars = field.stars.chunks(CHUNK);
+        let stars = field.stars.chunks(CHUNK).zip(seen.lights.chunks(CHUNK));
         self.chunks.resize_with(stars.len(), Vec::new);
         let projection = Projection::new(seen.shader.view, seen.shader.curve);
-        let find = |stars: &[Star], splats: &mut Vec<Splat>| {
+        let find = |stars: &[Star], lights: &[[f32; 3]], splats: &mut Vec<Splat>| {
             splats.clear();
-            for star in stars {
-                seen.images(star, &projection, splats);
+            for (star, light) in stars.iter().zip(lights) {
+                seen.images(star, *light, &projection, splats);
             }
         };
         if threads == Threads::All {
-            let chunks = field.stars.par_chunks(CHUNK).zip(&mut self.chunks);
-            chunks.for_each(|(stars, splats)| find(stars, splats));
+            let stars = field.stars.par_chunks(CHUNK);
+            let stars = stars.zip(seen.lights.par_chunks(CHUNK));
+            let chunks = stars.zip(&mut self.chunks);
+            chunks.for_each(|((stars, lights), splats)| find(stars, lights, splats));
         } else {
             let chunks = stars.zip(&mut self.chunks);
-            chunks.for_each(|(stars, splats)| find(stars, splats));
+            chunks.for_each(|((stars, lights), splats)| find(stars, lights, splats));
         }
         self.sort(seen.shader.view.height() as usize, rows);
     }
@@ -130,31 +133,43 @@ impl StarImages {
         }
     }
 
-    /// Adds the images of a band to its light. The band begins at row `top`.
-    pub(in crate::render) fn add(
+    /// Adds the images of a band, given by its number, its first row and its number of rows, to its light.
+    pub(in crate::render) fn add(&self, view: &View, place: BandPlace, light: &mut [[f32; 3]]) {
+        let width = view.width() as usize;
+        self.visit(view, place, |splat, row, column, share| {
+            let share = share * over_solid_angle(view, column, place.1 + row);
+            for (pixel, c) in light[row * width + column].iter_mut().zip(splat.light) {
+                *pixel += share * c;
+            }
+        });
+    }
+
+    /// Calls `pixel` with the row and the column of each pixel of a band that an image falls on, again and again where
+    /// several do.
+    pub(in crate::render) fn pixels(
         &self,
         view: &View,
-        (band, top, rows): (usize, usize, usize),
-        light: &mut [[f32; 3]],
+        place: BandPlace,
+        mut pixel: impl FnMut(usize, usize),
     ) {
-        let width = view.width() as usize;
+        self.visit(view, place, |_, row, column, _| pixel(row, column));
+    }
+
+    /// Calls `pixel` with each image of a band, the row and the column of a pixel that it falls on, and its share.
+    fn visit(
+        &self,
+        view: &View,
+        (band, top, rows): BandPlace,
+        mut pixel: impl FnMut(&Splat, usize, usize, f32),
+    ) {
+        let width = i64::from(view.width());
         for splat in &self.sorted[self.firsts[band]..self.firsts[band + 1]] {
-            for (row, down) in [(splat.row, 1.0 - splat.down), (splat.row + 1, splat.down)] {
-                let row_of_band = i64::from(row) - top as i64;
-                if row_of_band < 0 || row_of_band >= rows as i64 {
-                    continue;
-                }
-                for (column, right) in [
-                    (splat.column, 1.0 - splat.right),
-                    (splat.column + 1, splat.right),
-                ] {
-                    if column < 0 || column >= width as i32 {
-                        continue;
-                    }
-                    let share = right * down * over_solid_angle(view, column, row);
-                    let pixel = &mut light[row_of_band as usize * width + column as usize];
-                    for (pixel, c) in pixel.iter_mut().zip(splat.light) {
-                        *pixel += share * c;
+            let row = i64::from(splat.row) - top as i64;
+            let column = i64::from(splat.column);
+            for (row, down) in [(row, 1.0 - splat.down), (row + 1, splat.down)] {
+                for (column, right) in [(column, 1.0 - splat.right), (column + 1, splat.right)] {
+                    if (0..rows as i64).contains(&row) && (0..width).contains(&column) {
+                        pixel(splat, row as usize, column as usize, right * down);
                     }
                 }
             }
@@ -162,12 +177,12 @@ impl StarImages {
     }
 }
 
+/// A band's number, its first row in the picture, and its number of rows.
+pub(in crate::render) type BandPlace = (usize, usize, usize);
+
 /// Returns the solid angle of a pixel in the picture's centre over that of a pixel, `(1 + X² + Y²)^{3/2}`.
-fn over_solid_angle(view: &View, column: i32, row: i32) -> f32 {
-    let (x, y) = (
-        view.x_at(f64::from(column) + 0.5),
-        view.y_at(f64::from(row) + 0.5),
-    );
+fn over_solid_angle(view: &View, column: usize, row: usize) -> f32 {
+    let (x, y) = (view.x_at(column as f64 + 0.5), view.y_at(row as f64 + 0.5));
     let square = 1.0 + x * x + y * y;
     (square * square.sqrt()) as f32
 }
@@ -184,7 +199,13 @@ impl Splat {
 
 impl StarView<'_> {
     /// Finds the images of a star.
-    fn images(&self, star: &Star, projection: &Projection, splats: &mut Vec<Splat>) {
+    fn images(
+        &self,
+        star: &Star,
+        light: [f32; 3],
+        projection: &Projection,
+        splats: &mut Vec<Splat>,
+    ) {
         let [p, a, b] = self.shader.axes();
         let direction = star.direction;
         let (along, across) = (direction.dot(p), (direction.dot(a), direction.dot(b)));
@@ -200,7 +221,6 @@ impl StarView<'_> {
         } else {
             (1.0, 0.0)
         };
-        let light = self.colours.light(star);
         let brightest = light.iter().fold(0.0_f32, |most, c| most.max(c.abs()));
         let brightest = f64::from(brightest) / projection.solid_angle;
         let spread = sine.max(0.5 * self.radius);
