@@ -213,7 +213,7 @@ impl<A: SweptAngles> Renderer<A> {
             }
             let new = || (has_light, SkyAtRadius::new(scene, view, source, angles));
             let (_, radius) = self.sky.get_or_insert_with(new);
-            Some(FrameSky::at_radius(radius, scene, view, source))
+            Some(FrameSky::at_radius(radius, scene, view, source, form))
         } else {
             None
         };

@@ -101,7 +101,7 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
             view: &view,
             curves,
             map,
-            sky: sky.map(|sky| FrameSky::at_radius(sky, &scene, &view, source)),
+            sky: sky.map(|sky| FrameSky::at_radius(sky, &scene, &view, source, form)),
             colours: self.colours.of(&scene, form),
             angles: self.angles,
             threads: if on_all_threads {

@@ -65,7 +65,7 @@ impl<O: Orbits> Frames for RayByRay<'_, O> {
         };
         let sky = radius
             .as_ref()
-            .map(|radius| FrameSky::at_radius(radius, &scene, &view, source));
+            .map(|radius| FrameSky::at_radius(radius, &scene, &view, source, form));
         let frame = pixelwise::Frame {
             scene: &scene,
             view: &view,

@@ -105,10 +105,30 @@ impl<'a> FrameSky<'a> {
         scene: &Scene,
         view: &'a View,
         source: Option<&'a SkySource>,
+        form: Form,
     ) -> Self {
         match source {
-            Some(source) => Self::new(view, &radius.curve, scene, (source, &radius.lights)),
+            Some(source) => {
+                let faintest = faintest(form, scene.exposure());
+                Self::new(
+                    view,
+                    &radius.curve,
+                    scene,
+                    (source, &radius.lights),
+                    faintest,
+                )
+            }
             None => Self::dark(view, &radius.curve, scene),
         }
+    }
+}
+
+/// Returns the least light of a pixel that counts: some hundredths of half of the first code of a picture's samples. An
+/// exposure changes that; data have none.
+fn faintest(form: Form, exposure: f64) -> f64 {
+    match form {
+        Form::Rgb8 => 1e-5 * libm::exp2(-exposure),
+        Form::Rgb16 => 1e-7 * libm::exp2(-exposure),
+        Form::Grey8 | Form::Grey16 | Form::Layers(_) => 1e-7,
     }
 }

@@ -47,6 +47,7 @@ impl<'a> FrameSky<'a> {
         curve: &'a EscapeCurve,
         scene: &Scene,
         (source, lights): (&'a SkySource, &'a [[f32; 3]]),
+        faintest: f64,
     ) -> Self {
         let shader = SkyShader::new(view, curve, scene);
         let stars = scene.sky().and_then(|sky| sky.stars.as_ref());
@@ -55,6 +56,7 @@ impl<'a> FrameSky<'a> {
                 shader,
                 lights,
                 radius: stars.map_or(0.0, |stars| stars.radius),
+                faintest,
             };
             (seen, field)
         };

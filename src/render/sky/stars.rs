@@ -24,10 +24,6 @@ use crate::render::frame::Threads;
 use crate::scene::View;
 use crate::sky::{Star, StarField};
 
-/// Images whose pixels would be fainter than this are left out, and all higher orders with them: it is half of the first
-/// code of 16 bits.
-const FAINTEST: f64 = 5e-7;
-
 /// Brighter images count as this bright, so that sums of 32 bits stay finite.
 const BRIGHTEST: f64 = 1e30;
 
@@ -37,6 +33,9 @@ const AXIS: f64 = 1e-7;
 /// More orders than the faintest image leaves of the brightest star: each is about e^{2π} times fainter than the one
 /// before last.
 const MOST_ORDERS: usize = 24;
+
+/// Parts of a half turn of the angle swept.
+const SHARES: usize = 16;
 
 /// Stars of a task.
 const CHUNK: usize = 2048;
@@ -71,6 +70,8 @@ pub(in crate::render) struct StarView<'a> {
     pub(in crate::render) lights: &'a [[f32; 3]],
     /// The angular radius of stars, in radians.
     pub(in crate::render) radius: f64,
+    /// Images whose pixels would be fainter than this are left out.
+    pub(in crate::render) faintest: f64,
 }
 
 impl StarImages {
@@ -224,8 +225,16 @@ impl StarView<'_> {
         let brightest = light.iter().fold(0.0_f32, |most, c| most.max(c.abs()));
         let brightest = f64::from(brightest) / projection.solid_angle;
         let spread = sine.max(0.5 * self.radius);
-        for (order, most) in (0..=projection.last).zip(&projection.most).skip(first) {
-            if brightest * most < FAINTEST * spread {
+        let share = ((theta * (SHARES as f64 / PI)) as usize).min(SHARES - 1);
+        for order in first..=projection.last {
+            // Odd orders come the other way about the hole.
+            let share = if order % 2 == 0 {
+                share
+            } else {
+                SHARES - 1 - share
+            };
+            let most = projection.most[order][share];
+            if brightest * most < self.faintest * spread {
                 return;
             }
             let turns = TAU * (order / 2) as f64;
@@ -245,7 +254,7 @@ impl StarView<'_> {
                 let is_plain = order == 0 && along > 0.0;
                 image.magnification(if is_plain { sine } else { spread })
             };
-            if brightest * magnification < FAINTEST {
+            if brightest * magnification < self.faintest {
                 continue;
             }
             let scale = magnification / projection.solid_angle;
@@ -271,8 +280,9 @@ struct Projection {
     size: (f64, f64),
     /// Of a pixel in the picture's centre.
     solid_angle: f64,
-    /// For each order, a bound of `sin ψ |dψ/dΦ|`: that of its first angle, since both factors fall with the angle.
-    most: [f64; MOST_ORDERS],
+    /// For each order and each share of its half turn, a bound of `sin ψ |dψ/dΦ|`: that at the share's start, since both
+    /// factors fall with the angle.
+    most: [[f64; SHARES]; MOST_ORDERS],
     /// The cosines of the angles that rays of the picture sweep within half a turn, the least and the greatest.
     cosines: (f64, f64),
     /// The last order that the picture may show.
@@ -294,11 +304,14 @@ impl Projection {
             libm::cos(least_swept.min(PI)) + 1e-9,
         );
         let most = core::array::from_fn(|order| {
-            if order == 0 {
-                return f64::INFINITY;
-            }
-            let image = curve.image(PI * order as f64);
-            image.sine / image.rate
+            core::array::from_fn(|share| {
+                if order == 0 {
+                    return f64::INFINITY;
+                }
+                let angle = PI * (order as f64 + share as f64 / SHARES as f64);
+                let image = curve.image(angle);
+                image.sine / image.rate
+            })
         });
         let (z, ta, tb) = (view.z(), view.ta(), view.tb());
         let side = view.pixel_side();
