@@ -69,7 +69,7 @@ impl<'a> SkyPainter<'a> {
         } else {
             (1.0, 0.0)
         };
-        let (parts_out, parts_around) = self.parts((x, y));
+        let (parts_out, parts_around) = self.parts((x, y), (across, down));
         let mean = |part: (f64, f64)| {
             let sight = self.shader.at(part)?;
             let footprint = self.shader.footprint(&sight);
@@ -109,19 +109,22 @@ impl<'a> SkyPainter<'a> {
         sum.map(|c| c * share)
     }
 
-    /// Returns into how many parts a pixel is cut, outwards from the hole and around it.
-    fn parts(&self, centre: (f64, f64)) -> (usize, usize) {
+    /// Returns into how many parts a pixel is cut, outwards from the hole (a unit vector in the picture) and around it.
+    fn parts(&self, centre: (f64, f64), (across, down): (f64, f64)) -> (usize, usize) {
         let Some(sight) = self.shader.at(centre) else {
             return (MOST_PARTS as usize, 1);
         };
         let whole = |parts: f64| parts.ceil().clamp(1.0, MOST_PARTS) as usize;
         let swept = self.shader.swept_per_pixel(&sight);
+        let parts_out = whole(PARTS_PER_RADIAN * swept);
         let footprint = self.shader.footprint(&sight);
-        let size2 = footprint.along_x.length_squared() + footprint.along_y.length_squared();
+        let out = footprint.along_x * across + footprint.along_y * down;
+        let around = footprint.along_y * across - footprint.along_x * down;
+        let size = (out.length() / parts_out as f64).max(around.length());
         let direction = sight.direction;
         let to_pole2 = direction.x * direction.x + direction.y * direction.y;
-        let pole = whole(PARTS_PER_RADIAN * (size2 / to_pole2.max(1e-300)).sqrt());
-        (whole(PARTS_PER_RADIAN * swept).max(pole), pole)
+        let pole = whole(PARTS_PER_RADIAN * size / to_pole2.max(1e-300).sqrt());
+        (parts_out.max(pole), pole)
     }
 }
 
