@@ -145,18 +145,19 @@ fn steps_of_an_orbit(form: Form, smooth: bool) {
     assert_eq!(count(draw), 0, "lit-orbit, {form:?}, smooth {smooth}");
 }
 
-/// A panorama and stars in memory, behind a lit disk and without one, on one thread.
+/// A panorama and stars in memory and a grid, behind a lit disk and without one, on one thread.
 pub(crate) fn skies_take_no_memory_once_warm() {
     let texels = (0..6 * 64 * 64).map(|i| (i % 251) as f32 / 251.0).collect();
     let stars = StarField::synthetic(2000, 1, None);
     let panorama = Panorama::from_linear(64, texels);
-    let source = Arc::new(SkySource::new(Some(panorama), Some(stars), None));
+    let source = Arc::new(SkySource::new(Some(panorama), Some(stars), Some(15.0)));
     let sky = Sky {
         panorama: Some(SkyFile::new("in memory")),
         stars: Some(Stars::new(StarSource::Synthetic {
             count: 2000,
             seed: 1,
         })),
+        grid: Some(15.0),
         ..Sky::default()
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();

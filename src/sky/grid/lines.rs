@@ -3,8 +3,9 @@
 //! The formulas are in the documentation of the parent module.
 
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
-use super::polygon::{clip, cross, dot, edges};
+use super::polygon::{Polygon, dot};
 
 /// Equidistant lines, and a footprint across them. All lengths are in units of the lines' distance.
 pub(super) struct Lines {
@@ -38,13 +39,20 @@ impl Lines {
         let [first, second] = self.along.map(f64::abs);
         let a = first.max(second).max(NARROWEST);
         let b = first.min(second).max(THINNEST * a);
+        let (x, far, near) = (self.place, 0.5 * (a + b), 0.5 * (a - b));
         let r = self.half_width;
+        // Most footprints are all in a line, or all beside it.
+        if x.abs() + far <= r {
+            return 1.0;
+        }
+        if x.abs() - far >= r && x.abs() + far <= 1.0 - r {
+            return 0.0;
+        }
         let g = |x: f64| {
             let y = from_nearest_integer(x).abs();
             let inside = (r - y).max(0.0);
             r * y * (1.0 - y) + 0.5 * inside * inside
         };
-        let (x, far, near) = (self.place, 0.5 * (a + b), 0.5 * (a - b));
         let bend = (g(x + far) - g(x + near)) - (g(x - near) - g(x - far));
         (2.0 * r + bend / (a * b)).clamp(0.0, 1.0)
     }
@@ -52,21 +60,24 @@ impl Lines {
     /// Returns the share of the footprint that lies in lines of both families, whose own means are given. Footprints
     /// wider than half a step count as independent in the two.
     pub(super) fn mean_crossing(&self, mean: f64, other: &Self, other_mean: f64) -> f64 {
-        if mean.min(other_mean) <= 0.0 || self.extent().max(other.extent()) > 0.5 {
+        // What is all in lines of one family, or all beside them, needs no polygon.
+        let one_decides = mean.min(other_mean) <= 0.0 || mean.max(other_mean) >= 1.0;
+        if one_decides || self.extent().max(other.extent()) > 0.5 {
             return mean * other_mean;
         }
         // The footprint as a unit square, and what the nearest two lines leave of it.
-        let mut polygon = vec![[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
+        let mut polygon = Polygon::UNIT_SQUARE;
         for lines in [self, other] {
             for side in [1.0, -1.0] {
-                polygon = clip(&polygon, |point| {
-                    lines.half_width - side * (lines.place + dot(lines.along, point))
-                });
+                let inside = lines.half_width - side * lines.place;
+                if inside < 0.5 * lines.extent() {
+                    polygon.cut(|point| inside - side * dot(lines.along, point));
+                }
             }
         }
-        let crosses = edges(&polygon).map(|(start, end)| cross(start, end));
-        let area: f64 = 0.5 * crosses.sum::<f64>();
-        area.max(mean + other_mean - 1.0).min(mean.min(other_mean))
+        (polygon.area())
+            .max(mean + other_mean - 1.0)
+            .min(mean.min(other_mean))
     }
 }
 
@@ -80,12 +91,17 @@ pub(super) fn from_nearest_integer(x: f64) -> f64 {
 
 /// The half width of the meridians in units of the whole circle, integrated over v.
 ///
-/// It repeats itself with the period 1: it is symmetric about the poles (v = 0 and 1) and about the equator. The
-/// integral begins at v = −½ and ends at v = 3/2.
+/// It has the period 1, since it is symmetric about the poles (v = 0 and 1) and about the equator.
 #[derive(Debug, Clone)]
 pub(super) struct MeridianWidths {
-    integral: Vec<f64>,
+    /// The integral from v = 0 to the start of each cell, and to v = 1.
+    integral: [f64; Self::CELLS + 1],
 }
+
+/// cos(latitude) in the middle of each cell.
+static COSINES: LazyLock<[f64; MeridianWidths::CELLS]> = LazyLock::new(|| {
+    core::array::from_fn(|i| libm::sin(PI * MeridianWidths::CELL * (i as f64 + 0.5)))
+});
 
 impl MeridianWidths {
     /// The number of cells from v = 0 to 1.
@@ -94,15 +110,12 @@ impl MeridianWidths {
 
     /// The half width is `at_equator/cos(latitude)`, at most `most`.
     pub(super) fn new(at_equator: f64, most: f64) -> Self {
+        let mut integral = [0.0; Self::CELLS + 1];
         let mut sum = 0.0;
-        let integral = (0..=2 * Self::CELLS)
-            .map(|i| {
-                let here = sum;
-                let cos_latitude = libm::cos(PI * Self::CELL * (i as f64 + 0.5)).abs();
-                sum += Self::CELL * (at_equator / cos_latitude).min(most);
-                here
-            })
-            .collect();
+        for (to_end, cos_latitude) in integral[1..].iter_mut().zip(COSINES.iter()) {
+            sum += Self::CELL * (at_equator / cos_latitude).min(most);
+            *to_end = sum;
+        }
         Self { integral }
     }
 
@@ -112,10 +125,13 @@ impl MeridianWidths {
         (self.until(v + reach) - self.until(v - reach)) / (2.0 * reach)
     }
 
+    /// Returns the integral from −1 to v, which is −1 or more.
     fn until(&self, v: f64) -> f64 {
-        let place = (v + 0.5) * Self::CELLS as f64;
-        let index = (place as usize).min(2 * Self::CELLS - 1);
-        let [start, end] = [self.integral[index], self.integral[index + 1]];
-        start + (place - index as f64) * (end - start)
+        let place = (v + 1.0) * Self::CELLS as f64;
+        let cell = place as usize;
+        let (periods, i) = (cell / Self::CELLS, cell % Self::CELLS);
+        let [start, end] = [self.integral[i], self.integral[i + 1]];
+        let whole = periods as f64 * self.integral[Self::CELLS];
+        whole + start + (place - cell as f64) * (end - start)
     }
 }
