@@ -151,7 +151,7 @@ mod tests {
         let stars = Scene::builtin("stars").unwrap();
         let film = Animation::load("flyby").unwrap();
         let source = StarSource::Synthetic {
-            count: 20_000,
+            count: 60_000,
             seed: 1,
         };
         for sky in [stars.sky(), film.sky()] {

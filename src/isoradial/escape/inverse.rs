@@ -4,7 +4,7 @@ use super::{EscapeCurve, value_and_slope};
 use crate::isoradial::chebyshev::Chebyshev;
 
 /// Coefficients of an octave's inverse polynomial.
-pub(super) const INVERSE_COEFFICIENTS: usize = 13;
+pub(super) const INVERSE_COEFFICIENTS: usize = 15;
 
 /// A ray that sweeps a given angle: an image of what lies there.
 #[derive(Debug, Clone, Copy, PartialEq)]
