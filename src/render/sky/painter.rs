@@ -186,13 +186,14 @@ impl Tiled<NODES> for SkyTiles<'_, '_, '_> {
             }
         };
         let top = (self.top + bounds.rows.0) as f64;
+        // Three rows in turn: the one above, this one, the one below.
         let mut places: [Places; 3] = [[[0.5; TILE.0 + 2 + LANES]; 2]; 3];
         fill(top - 1.0, &mut places[0]);
         fill(top, &mut places[1]);
         let mut runs = bounds.clip(runs).peekable();
-        for row in bounds.rows.0..bounds.rows.1 {
-            fill((self.top + row + 1) as f64, &mut places[2]);
-            let [above, here, below] = &places;
+        for (i, row) in (bounds.rows.0..bounds.rows.1).enumerate() {
+            fill((self.top + row + 1) as f64, &mut places[(i + 2) % 3]);
+            let [above, here, below] = [0, 1, 2].map(|after| &places[(i + after) % 3]);
             while let Some((_, (from, to))) = runs.next_if(|(of_row, _)| *of_row == row) {
                 let pixels = &mut self.light[row * self.width..][from..to];
                 for (group, pixels) in pixels.chunks_mut(LANES).enumerate() {
@@ -207,10 +208,11 @@ impl Tiled<NODES> for SkyTiles<'_, '_, '_> {
                         [0, 1].map(|q| half * (lanes(here, q, i + 1) - lanes(here, q, i - 1)));
                     let along_y = [0, 1].map(|q| half * (lanes(below, q, i) - lanes(above, q, i)));
                     let means = self.painter.backdrop.means(place, along_x, along_y);
-                    pixels.copy_from_slice(&means[..pixels.len()]);
+                    for (pixel, mean) in pixels.iter_mut().zip(means) {
+                        *pixel = mean;
+                    }
                 }
             }
-            places.rotate_left(1);
         }
     }
 
