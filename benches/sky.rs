@@ -270,8 +270,8 @@ fn escape_curve(view: &View, table: &Table) {
     );
 }
 
-/// Returns the texels of 1/f noise from 0 to 1, as much of it in each octave, down to single texels. `height` is a power
-/// of two.
+/// Returns the texels of 1/f noise from 0 to 1, as much of it in each octave, down to single texels. `height` is a
+/// power of two.
 fn noise(height: usize) -> Vec<f32> {
     let mut random = 7_u64;
     let mut next = || {
@@ -281,7 +281,8 @@ fn noise(height: usize) -> Vec<f32> {
         random ^= random << 17;
         (random >> 40) as f32 / (1 << 24) as f32
     };
-    // A new texel lies in an old one's half, between its centre and a neighbour's: one more than this neighbour's index.
+    // A new texel lies in an old one's half, between its centre and a neighbour's: one more than this neighbour's
+    // index.
     let after_second = |i: usize| i / 2 + 2 * (i % 2);
     let octaves = height.ilog2() + 1;
     let mut texels: Vec<f32> = (0..6).map(|_| next()).collect();

@@ -253,6 +253,11 @@ impl<A: SweptAngles> Renderer<A> {
         done: impl Fn(DrawnFrame<'_>) -> Result<(), E> + Sync,
     ) -> Result<(), E> {
         let frames = Curved::new(animation, &self.angles);
+        let (sky, read) = &self.source;
+        let frames = match read.read() {
+            Some(source) if sky.as_ref() == animation.sky() => frames.with_sky(source),
+            _ => frames,
+        };
         let sharing = Sharing::fastest(numbers.len() as u64, u64::MAX);
         batch::draw(&frames, form, numbers, sharing, |_| true, done)
     }

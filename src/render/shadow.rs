@@ -53,7 +53,8 @@ pub(super) fn covers(view: &View, critical: f64, (x, y): (f64, f64)) -> bool {
     ray.z >= critical * ray.transverse()
 }
 
-/// Returns the share of a pixel as the mean over lines across the edge, upright or level ones, on each of which it is exact.
+/// Returns the share of a pixel as the mean over lines across the edge, upright or level ones, on each of which it is
+/// exact.
 fn bent_share(view: &View, critical: f64, (x, y): (f64, f64), upright: bool) -> f64 {
     let along = [view.z(), view.ta(), view.tb()].map(|affine| {
         let slope = if upright { -affine.per_y } else { affine.per_x };

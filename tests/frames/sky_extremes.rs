@@ -1,5 +1,5 @@
-//! Guards against values that are not numbers, panics, and bytes that depend on the threads, at the ends of what a scene
-//! may say.
+//! Guards against values that are not numbers, panics, and bytes that depend on the threads, at the ends of what a
+//! scene may say.
 
 use std::sync::Arc;
 

@@ -1,11 +1,14 @@
 //! Panoramas behind the hole, against 64 × 64 rays for each pixel.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use darkness::Renderer;
 use darkness::isoradial::EscapeCurve;
 use darkness::orbit::exact::Exact;
-use darkness::scene::{Camera, ImageSize, Layer, LayerSet, Scene, Sky, SkyFile, View};
+use darkness::render::batch::{DrawnFrame, FrameError};
+use darkness::render::{Form, Pixels};
+use darkness::scene::{Animation, Camera, ImageSize, Layer, LayerSet, Scene, Sky, SkyFile, View};
 use darkness::sky::{Panorama, SkySource, place};
 
 use crate::tables::table;
@@ -163,4 +166,30 @@ fn a_pixel_is_the_mean_of_many_rays() {
         println!("{name}: rms {rms:.5}, worst {worst:?}");
         assert!(rms <= 0.01, "{name}: {rms}");
     }
+}
+
+/// Guards against a film that looks for the file of a sky that is in memory.
+#[test]
+fn a_film_has_the_sky_that_is_in_memory() {
+    let source = Arc::new(SkySource::new(Some(noise(16)), None, None));
+    let film = "[camera]\nposition = [20, 0, 4]\nfov = 40\n[sky]\npanorama = \"of the test\"\n\
+                [image]\nwidth = 32\nheight = 18\n[animation]\nframes = 2\n\
+                orbit = { radius = 20, inclination = 80, azimuth = [0, 90] }\n";
+    let film = Animation::from_toml(film).unwrap();
+    let renderer = Renderer::new(table("standard")).with_sky(sky(), source);
+    let lit = AtomicUsize::new(0);
+    let done = |frame: DrawnFrame<'_>| {
+        let (pixels, _) = frame.pixels?;
+        if let Pixels::Rgb8(bytes) = pixels {
+            lit.fetch_add(
+                usize::from(bytes.iter().any(|&byte| byte > 0)),
+                Ordering::Relaxed,
+            );
+        }
+        Ok::<(), FrameError>(())
+    };
+    renderer
+        .render_frames(&film, Form::Rgb8, [1, 2].into_iter(), done)
+        .unwrap();
+    assert_eq!(lit.into_inner(), 2);
 }

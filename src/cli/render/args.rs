@@ -60,8 +60,8 @@ pub(in crate::cli) struct RenderArgs {
     #[arg(long, value_name = "true|false", action = clap::ArgAction::Set)]
     pub(super) antialias: Option<bool>,
     /// The layers of a .exr or .npz file, with commas: coverage, order, radius, azimuth, redshift, emission_cosine,
-    /// temperature, colour, sky (where a pixel's ray leaves to), sky_uv (that place in a panorama) [default: the scene's;
-    /// else coverage, and colour where there is light or a sky]
+    /// temperature, colour, sky (where a pixel's ray leaves to), sky_uv (that place in a panorama) [default: the
+    /// scene's; else coverage, and colour where there is light or a sky]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(super) layers: Option<Vec<String>>,
     /// The exposure of light in pictures and films, in stops: each doubles it [default: the scene's]
@@ -79,9 +79,9 @@ pub(in crate::cli) struct RenderArgs {
     /// Fail where the table is missing, instead of making it: for one of many workers
     #[arg(long)]
     pub(super) require_table: bool,
-    /// The most memory for the sky and the frames that are drawn at a time, such as 16GiB: for each pixel of a frame two
-    /// bytes for a mask, six for 8-bit colour, twelve for 16-bit colour, eight for each number of a layer; for each pixel
-    /// of a panorama sixteen
+    /// The most memory for the sky and the frames that are drawn at a time, such as 16GiB: for each pixel of a frame
+    /// two bytes for a mask, six for 8-bit colour, twelve for 16-bit colour, eight for each number of a layer; for each
+    /// pixel of a panorama sixteen
     #[arg(long, value_name = "SIZE", default_value = memory::DEFAULT, value_parser = memory::parse)]
     pub(super) max_memory: ByteSize,
     #[command(flatten)]

@@ -53,7 +53,8 @@ pub(super) fn of(animation: &Animation, format: Format) -> anyhow::Result<Form> 
     }
     if in_colour && format == Format::Y4mGray {
         return Err(misuse(
-            "y4m-gray films hold masks, and this scene has colour; choose --format y4m, or remove [disk.light] and [sky]",
+            "y4m-gray films hold masks, and this scene has colour; choose --format y4m, or remove [disk.light] and \
+             [sky]",
         ));
     }
     let ImageSize { width, height } = animation.image();

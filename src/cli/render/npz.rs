@@ -1,9 +1,9 @@
 //! Frames as NumPy archives.
 //!
 //! An `.npz` file is a ZIP archive of deflated `.npy` files: one array for each layer, by the layer's name. Arrays have
-//! the shape (height, width), or (height, width, n) where a pixel has n numbers, and hold 32-bit floats, the order 8-bit
-//! integers. The first array, `darkness`, is a text with the program's version and the [`FrameOrigin`], a line each. ZIP
-//! checks the arrays but not its own directory, so the archive's comment is the CRC-32 of all before it.
+//! the shape (height, width), or (height, width, n) where a pixel has n numbers, and hold 32-bit floats, the order
+//! 8-bit integers. The first array, `darkness`, is a text with the program's version and the [`FrameOrigin`], a line
+//! each. ZIP checks the arrays but not its own directory, so the archive's comment is the CRC-32 of all before it.
 //!
 //! The formats: PKWARE's APPNOTE.TXT 6.3.10 (4.3), and NumPy's `numpy.lib.format` (version 1.0).
 

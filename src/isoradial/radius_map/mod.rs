@@ -18,7 +18,8 @@
 //! They need not be right: u is computed for the rays that they lead to. That keeps τ analytic.
 //!
 //! Nodes are Chebyshev's, ends included. The degrees follow from the coefficients along a few lines: from the first
-//! degree on that leaves less than half a unit in the last place of a float of 32 bits. The error is measured at places between the nodes.
+//! degree on that leaves less than half a unit in the last place of a float of 32 bits. The error is measured at places
+//! between the nodes.
 //!
 //! The map goes a little beyond both edges, so that whoever interpolates it in the picture need not stop there.
 

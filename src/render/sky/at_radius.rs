@@ -75,6 +75,11 @@ impl SharedSky {
         Self(OnceLock::from(Ok(source)))
     }
 
+    /// What has been read, if anything has.
+    pub(in crate::render) fn read(&self) -> Option<Arc<SkySource>> {
+        self.0.get()?.as_ref().ok().cloned()
+    }
+
     /// The sky of a scene, where the form shows its light.
     ///
     /// # Errors

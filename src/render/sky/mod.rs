@@ -2,8 +2,8 @@
 //!
 //! The direction of a pixel's sky is smooth over the picture, so that it comes from [patches](super::patch) as the
 //! disk's light does. A pixel shows the mean of panorama and grid over its footprint. Beside the shadow and about the
-//! panorama's poles the footprint bends within a pixel: such pixels are cut into parts. Stars are points, added pixel by
-//! pixel.
+//! panorama's poles the footprint bends within a pixel: such pixels are cut into parts. Stars are points, added pixel
+//! by pixel.
 
 mod at_radius;
 mod backdrop;

@@ -1,8 +1,8 @@
 //! What the ray of any place in the picture sees of the sky, from the escape curve of the camera's radius.
 //!
 //! # Footprint
-//! A ray leaves in the direction `D = p̂ cos Φ + t̂ sin Φ`. Let ψ be its angle from the hole's direction, and α its azimuth
-//! about it. From a pixel to the next
+//! A ray leaves in the direction `D = p̂ cos Φ + t̂ sin Φ`. Let ψ be its angle from the hole's direction, and α its
+//! azimuth about it. From a pixel to the next
 //!
 //! ```text
 //! dψ = (z ds − s dz)/(s² + z²),   ds = (t_a dt_a + t_b dt_b)/s,   dα = (t_a dt_b − t_b dt_a)/s²

@@ -1,9 +1,9 @@
 //! The images of stars in a frame.
 //!
 //! # Roots
-//! A star is seen wherever a ray leaves towards it. With θ its angle from p̂ these are the rays in the plane of p̂ and the
-//! star that sweep `θ, 2π − θ, 2π + θ, 4π − θ, …`, alternately on its side of the hole and on the other one: one image
-//! for each order, since the swept angle falls strictly with the angle from the hole's direction.
+//! A star is seen wherever a ray leaves towards it. With θ its angle from p̂ these are the rays in the plane of p̂ and
+//! the star that sweep `θ, 2π − θ, 2π + θ, 4π − θ, …`, alternately on its side of the hole and on the other one: one
+//! image for each order, since the swept angle falls strictly with the angle from the hole's direction.
 //!
 //! # Light
 //! An image is magnified by `|sin ψ dψ/(sin Φ dΦ)|` in solid angle, and its irradiance with it, since lensing keeps
@@ -11,8 +11,8 @@
 //! star of angular radius ρ is seen as a ring of the area `2π sin ψ ρ/|dΦ/dψ|` for each order, so that the
 //! magnification is at most `2 sin ψ/(ρ |dΦ/dψ|)`.
 //!
-//! An image falls on the square of one pixel, centred on its place, and each pixel gets its share of the irradiance over
-//! its own solid angle. So the sum over pixels does not depend on where between them the image falls.
+//! An image falls on the square of one pixel, centred on its place, and each pixel gets its share of the irradiance
+//! over its own solid angle. So the sum over pixels does not depend on where between them the image falls.
 
 use core::f64::consts::{PI, TAU};
 
@@ -280,8 +280,8 @@ struct Projection {
     size: (f64, f64),
     /// Of a pixel in the picture's centre.
     solid_angle: f64,
-    /// For each order and each share of its half turn, a bound of `sin ψ |dψ/dΦ|`: that at the share's start, since both
-    /// factors fall with the angle.
+    /// For each order and each share of its half turn, a bound of `sin ψ |dψ/dΦ|`: that at the share's start, since
+    /// both factors fall with the angle.
     most: [[f64; SHARES]; MOST_ORDERS],
     /// The cosines of the angles that rays of the picture sweep within half a turn, the least and the greatest.
     cosines: (f64, f64),

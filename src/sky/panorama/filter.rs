@@ -9,8 +9,8 @@
 //!
 //! * Up to about one texel one tap does, which takes 5 ns.
 //! * A footprint of up to two texels, or nearly a square, takes four taps at `± a ± b`, along its own sides: 30 ns.
-//! * A longer one takes a row of taps, or two rows, along the longer axis of M: 55 ns for 10 × 1 texels, at most 32 taps
-//!   and 170 ns.
+//! * A longer one takes a row of taps, or two rows, along the longer axis of M: 55 ns for 10 × 1 texels, at most 32
+//!   taps and 170 ns.
 
 use wide::{f32x4, i32x4};
 

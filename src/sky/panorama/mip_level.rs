@@ -70,8 +70,8 @@ impl MipLevel {
         values
     }
 
-    /// Returns for the first N of four places the mean of the bilinear values at the four places `± across` and `± down`
-    /// from there, each at most half a texel.
+    /// Returns for the first N of four places the mean of the bilinear values at the four places `± across` and
+    /// `± down` from there, each at most half a texel.
     #[inline(always)]
     pub(super) fn each_about<const N: usize>(
         &self,
