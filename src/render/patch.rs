@@ -230,6 +230,11 @@ impl<const N: usize> Patch<N> {
         f64::max(across * self.per_pixel.0, down * self.per_pixel.1)
     }
 
+    /// Returns a quantity's value in the middle.
+    pub(super) fn middle(&self, quantity: usize) -> f64 {
+        self.coefficients[quantity][0][0]
+    }
+
     /// Returns a quantity along the row of pixels' centres at `y`.
     #[inline]
     pub(super) fn row(&self, quantity: usize, y: f64) -> RowPolynomial<N> {
@@ -260,6 +265,13 @@ pub(super) struct RowPolynomial<const N: usize> {
 const LANES: usize = 16;
 
 impl<const N: usize> RowPolynomial<N> {
+    /// Returns the polynomial less a constant: near that constant single precision is then as fine as its change.
+    #[inline]
+    pub(super) fn less(mut self, constant: f64) -> Self {
+        self.powers[0] -= constant;
+        self
+    }
+
     /// Computes the quantity at x and at the places that follow, a pixel apart.
     ///
     /// What is computed in single precision is the difference from the value in the patch's middle. So the sum is as

@@ -1,7 +1,6 @@
 //! The mean over a footprint: against the exact mean, without seams, and never a panic.
 
 use darkness::sky::Panorama;
-use wide::f32x4;
 
 use crate::noise::{Random, one_over_f};
 
@@ -220,27 +219,6 @@ fn no_seam_where_taps_or_levels_change() {
 fn deviation(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     rms(&values.iter().map(|value| value - mean).collect::<Vec<_>>())
-}
-
-#[test]
-fn four_at_once_have_the_same_bits() {
-    let noise = Noise::new();
-    let mut random = Random(6);
-    for _ in 0..300 {
-        let four = [(); 4].map(|()| {
-            let place = [2.0 * random.number() - 0.5, 2.0 * random.number() - 0.5];
-            Footprint::by_chance(&mut random, place)
-        });
-        let lanes = |of: fn(&Footprint) -> [f32; 2]| {
-            [0, 1].map(|i| f32x4::new([0, 1, 2, 3].map(|lane| of(&four[lane])[i])))
-        };
-        let means = noise
-            .panorama
-            .means(lanes(|f| f.place), lanes(|f| f.a), lanes(|f| f.b));
-        for (mean, footprint) in means.iter().zip(&four) {
-            assert_eq!(*mean, footprint.mean_of(&noise.panorama));
-        }
-    }
 }
 
 #[test]

@@ -1,8 +1,9 @@
 //! What fills the sky: a panorama, and a grid before it.
 
-use wide::f32x4;
+use fearless_simd::Simd;
 
 use super::shader::SkyShader;
+use crate::sky::lattice::{ColourRow, Lattice, PixelRow};
 use crate::sky::{Grid, Panorama, SkySource};
 
 /// What fills the sky of one frame.
@@ -42,25 +43,20 @@ impl<'a> Backdrop<'a> {
         self.with_grid(light, place, along_x, along_y)
     }
 
-    /// Returns four means.
-    #[inline]
-    pub(super) fn means(
+    /// Returns what computes the means of pixels side by side, as a [`Lattice`] does.
+    pub(super) fn filler(
         &self,
-        place: [f32x4; 2],
-        along_x: [f32x4; 2],
-        along_y: [f32x4; 2],
-    ) -> [[f32; 3]; 4] {
-        let mut means = self.panorama.map_or([[0.0; 3]; 4], |panorama| {
-            panorama.means(place, along_x, along_y)
-        });
-        if self.grid.is_some() {
-            let pairs = [place, along_x, along_y].map(|pair| pair.map(f32x4::to_array));
-            for (i, mean) in means.iter_mut().enumerate() {
-                let [place, along_x, along_y] = pairs.map(|pair| pair.map(|lanes| lanes[i]));
-                *mean = self.with_grid(*mean, place, along_x, along_y);
-            }
+        origin: [f64; 2],
+        columns: usize,
+        middle: &PixelRow<'_>,
+    ) -> Filler<'_> {
+        let lattice = |panorama| Lattice::new(panorama, origin, columns, middle);
+        Filler {
+            backdrop: self,
+            origin,
+            columns,
+            lattice: self.panorama.map(lattice),
         }
-        means
     }
 
     /// Draws the grid over light.
@@ -81,5 +77,42 @@ impl<'a> Backdrop<'a> {
             over(green, light[1]),
             over(blue, light[2]),
         ]
+    }
+}
+
+/// Computes the mean light of pixels side by side, row after row.
+pub(super) struct Filler<'a> {
+    backdrop: &'a Backdrop<'a>,
+    origin: [f64; 2],
+    columns: usize,
+    lattice: Option<Lattice<'a>>,
+}
+
+impl Filler<'_> {
+    /// Computes the means of a row of pixels. `goes_on` tells that it lies below the row before.
+    #[inline(always)]
+    pub(super) fn row<S: Simd>(
+        &mut self,
+        simd: S,
+        places: &PixelRow<'_>,
+        goes_on: bool,
+        means: &mut ColourRow,
+    ) {
+        match &mut self.lattice {
+            Some(lattice) => lattice.row(simd, places, goes_on, means),
+            None => means[..self.columns].fill([0.0; 4]),
+        }
+        if self.backdrop.grid.is_none() {
+            return;
+        }
+        for (i, mean) in means[..self.columns].iter_mut().enumerate() {
+            let [along_x, along_y] = places.sides(i, [1.0; 2]);
+            let place = [0, 1].map(|q| (self.origin[q] + f64::from(places.centres[q][i])) as f32);
+            let [red, green, blue, _] = *mean;
+            let light = self
+                .backdrop
+                .with_grid([red, green, blue], place, along_x, along_y);
+            *mean = [light[0], light[1], light[2], 0.0];
+        }
     }
 }

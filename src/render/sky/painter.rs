@@ -2,13 +2,14 @@
 
 use std::sync::LazyLock;
 
-use wide::f32x4;
+use fearless_simd::{Simd, dispatch};
 
 use super::backdrop::Backdrop;
 use super::shader::{SkyShader, outward, place_change};
 use crate::render::patch::{Misfit, Patch, PatchFit};
 use crate::render::shadow;
 use crate::render::tiles::{Rectangle, Run, TILE, Tiled, paint_runs};
+use crate::sky::lattice::{COLUMNS, LANES, PixelRow, PlaceRow, level};
 use crate::sky::place;
 
 /// Nodes a side of a patch.
@@ -114,7 +115,8 @@ impl<'a> SkyPainter<'a> {
         let Some(sight) = self.shader.at(centre) else {
             return (MOST_PARTS as usize, 1);
         };
-        let whole = |parts: f64| parts.ceil().clamp(1.0, MOST_PARTS) as usize;
+        // Less a little: where pixels are symmetric about the hole the number is whole, but for rounding.
+        let whole = |parts: f64| (parts - 1e-6).ceil().clamp(1.0, MOST_PARTS) as usize;
         let swept = self.shader.swept_per_pixel(&sight);
         let parts_out = whole(PARTS_PER_RADIAN * swept);
         let footprint = self.shader.footprint(&sight);
@@ -135,12 +137,6 @@ struct SkyTiles<'p, 'a, 'm> {
     width: usize,
     light: &'m mut [[f32; 3]],
 }
-
-/// Pixels that are filtered side by side.
-const LANES: usize = 4;
-
-/// A row of places: one on either side more than a tile has columns, and those of unused lanes.
-type Places = [[f32; TILE.0 + 2 + LANES]; 2];
 
 impl Tiled<NODES> for SkyTiles<'_, '_, '_> {
     fn is_empty(&self, bounds: Rectangle) -> bool {
@@ -177,47 +173,86 @@ impl Tiled<NODES> for SkyTiles<'_, '_, '_> {
     }
 
     fn put_patch(&mut self, bounds: Rectangle, runs: &[Run], patch: &Patch<NODES>) {
-        let (first, last) = bounds.columns;
-        let count = last - first + 2;
-        let fill = |row: f64, places: &mut Places| {
-            for (quantity, places) in places.iter_mut().enumerate() {
-                let row = patch.row(quantity, row + 0.5);
-                row.fill(first as f64 - 0.5, &mut places[..count]);
-            }
-        };
-        let top = (self.top + bounds.rows.0) as f64;
-        // Three rows in turn: the one above, this one, the one below.
-        let mut places: [Places; 3] = [[[0.5; TILE.0 + 2 + LANES]; 2]; 3];
-        fill(top - 1.0, &mut places[0]);
-        fill(top, &mut places[1]);
-        let mut runs = bounds.clip(runs).peekable();
-        for (i, row) in (bounds.rows.0..bounds.rows.1).enumerate() {
-            fill((self.top + row + 1) as f64, &mut places[(i + 2) % 3]);
-            let [above, here, below] = [0, 1, 2].map(|after| &places[(i + after) % 3]);
-            while let Some((_, (from, to))) = runs.next_if(|(of_row, _)| *of_row == row) {
-                let pixels = &mut self.light[row * self.width..][from..to];
-                for (group, pixels) in pixels.chunks_mut(LANES).enumerate() {
-                    // In the last group the lanes beyond the run are not used.
-                    let i = from + LANES * group - first + 1;
-                    let lanes = |row: &Places, q: usize, i: usize| {
-                        f32x4::new(core::array::from_fn(|lane| row[q][i + lane]))
-                    };
-                    let place = [0, 1].map(|q| lanes(here, q, i));
-                    let half = f32x4::splat(0.5);
-                    let along_x =
-                        [0, 1].map(|q| half * (lanes(here, q, i + 1) - lanes(here, q, i - 1)));
-                    let along_y = [0, 1].map(|q| half * (lanes(below, q, i) - lanes(above, q, i)));
-                    let means = self.painter.backdrop.means(place, along_x, along_y);
-                    for (pixel, mean) in pixels.iter_mut().zip(means) {
-                        *pixel = mean;
-                    }
-                }
-            }
-        }
+        dispatch!(level(), simd => self.put_rows(simd, bounds, runs, patch));
     }
 
     fn put_pixel(&mut self, row: usize, column: usize) {
         let place = (column as f64 + 0.5, (self.top + row) as f64 + 0.5);
         self.light[row * self.width + column] = self.painter.pixel(place);
+    }
+}
+
+impl SkyTiles<'_, '_, '_> {
+    /// Paints the runs within a rectangle from its patch.
+    #[inline(always)]
+    fn put_rows<S: Simd>(
+        &mut self,
+        simd: S,
+        bounds: Rectangle,
+        runs: &[Run],
+        patch: &Patch<NODES>,
+    ) {
+        let (first, last) = bounds.columns;
+        let columns = last - first;
+        let left = first as f64;
+        let origin = [patch.middle(0), patch.middle(1)];
+        let (mut above, mut centres, mut below) = (NO_PLACES, NO_PLACES, NO_PLACES);
+        let middle = (self.top + (bounds.rows.0 + bounds.rows.1) / 2) as f64;
+        fill_places(patch, origin, (left, middle), &mut above, columns + 1);
+        fill_places(patch, origin, (left, middle + 1.0), &mut below, columns + 1);
+        let pixels = PixelRow {
+            above: &above,
+            centres: &centres,
+            below: &below,
+        };
+        let mut filler = self.painter.backdrop.filler(origin, columns, &pixels);
+        let mut means = [[0.0; 4]; COLUMNS + LANES];
+        let mut done = None;
+        let mut runs = bounds.clip(runs).peekable();
+        while let Some(&(row, _)) = runs.peek() {
+            let y = (self.top + row) as f64;
+            let goes_on = done.is_some_and(|done| done + 1 == row);
+            if goes_on {
+                core::mem::swap(&mut above, &mut below);
+            } else {
+                fill_places(patch, origin, (left, y), &mut above, columns + 1);
+            }
+            fill_places(patch, origin, (left + 0.5, y + 0.5), &mut centres, columns);
+            fill_places(patch, origin, (left, y + 1.0), &mut below, columns + 1);
+            let pixels = PixelRow {
+                above: &above,
+                centres: &centres,
+                below: &below,
+            };
+            filler.row(simd, &pixels, goes_on, &mut means);
+            while let Some((_, (from, to))) = runs.next_if(|(of_row, _)| *of_row == row) {
+                let light = &mut self.light[row * self.width..][from..to];
+                for (light, mean) in light.iter_mut().zip(&means[from - first..]) {
+                    *light = [mean[0], mean[1], mean[2]];
+                }
+            }
+            done = Some(row);
+        }
+    }
+}
+
+/// A row of places that is to be filled.
+const NO_PLACES: PlaceRow = [[0.0; COLUMNS + 1 + LANES]; 2];
+
+/// A lattice is as wide as a tile.
+const _: () = assert!(COLUMNS == TILE.0);
+
+/// Computes places from one on, a pixel apart, less an origin.
+#[inline(always)]
+fn fill_places(
+    patch: &Patch<NODES>,
+    origin: [f64; 2],
+    (x, y): (f64, f64),
+    places: &mut PlaceRow,
+    count: usize,
+) {
+    for (quantity, places) in places.iter_mut().enumerate() {
+        let row = patch.row(quantity, y).less(origin[quantity]);
+        row.fill(x, &mut places[..count]);
     }
 }

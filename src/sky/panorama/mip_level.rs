@@ -1,7 +1,8 @@
 //! A panorama at one of its sizes.
 
+use fearless_simd::prelude::*;
+use fearless_simd::{Select, f32x4, f32x8, i32x4};
 use rayon::prelude::*;
-use wide::{f32x4, i32x4};
 
 /// A panorama at one of its sizes: linear light, three floats a texel, rows from the top.
 #[derive(Debug)]
@@ -10,9 +11,6 @@ pub(super) struct MipLevel {
     /// One float more than the texels have, so that four can be loaded from where any of them begins.
     values: Vec<f32>,
 }
-
-/// Adding and subtracting it rounds a number below 2²² to the nearest integer.
-const ROUNDING: f32 = 12_582_912.0;
 
 impl MipLevel {
     /// Returns the number of values that a level of this height keeps.
@@ -30,107 +28,67 @@ impl MipLevel {
         self.height
     }
 
-    /// Returns the sum of the bilinear values at four places, which [`each_at`](Self::each_at) describes.
-    #[inline(always)]
-    pub(super) fn sum_at(&self, x: f32x4, y: f32x4) -> f32x4 {
-        let [a, b, c, d] = self.each_at::<4>(x, y);
-        (a + b) + (c + d)
+    /// Width and height.
+    pub(super) fn size(&self) -> [f32; 2] {
+        [2.0 * self.height as f32, self.height as f32]
     }
 
-    /// Returns the bilinear values at the first N of four places in texels: (0, 0) is the centre of the first texel, y
-    /// grows downwards. Each is red, green, blue and a number without meaning.
+    /// Returns the bilinear values at the first N of four places in texels: (0, 0) is the centre of the texel in the
+    /// `origin`'s column and row, y grows downwards. Each is the sum of two halves: red, green, blue and a number
+    /// without meaning.
     ///
     /// Columns wrap. A row beyond a pole comes back on the other side of the sky, half of the width further on. Places
     /// beyond 2²² have no precision left; they and NaN give some number or NaN.
     #[inline(always)]
-    pub(super) fn each_at<const N: usize>(&self, x: f32x4, y: f32x4) -> [f32x4; N] {
+    pub(super) fn at<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        (x, y): (f32x4<S>, f32x4<S>),
+        origin: (i32, i32),
+    ) -> [f32x8<S>; N] {
         let (column, right) = cells(x);
         let (row, down) = cells(y);
         let (columns, rows) = (2 * self.height as i32, self.height as i32);
+        let column = column + origin.0;
+        let column = column.simd_lt(0).select(column + columns, column);
+        let column = column.simd_ge(columns).select(column - columns, column);
+        let row = row + origin.1;
         // Negative where a texel or its neighbours lie outside.
-        let inside =
-            column | row | (i32x4::splat(columns - 2) - column) | (i32x4::splat(rows - 2) - row);
-        let (right, down) = (right.to_array(), down.to_array());
-        let mut values = [f32x4::ZERO; N];
-        if inside.to_bitmask() == 0 {
-            let stride = 3 * columns as usize;
-            let starts = row * i32x4::splat(stride as i32) + (column + column + column);
-            for (i, value) in values.iter_mut().enumerate() {
-                let start = starts.to_array()[i] as u32 as usize;
-                let both = &self.values[start..start + stride + 7];
-                let texels = [0, 3, stride, stride + 3].map(|texel| four(both, texel));
-                *value = bilinear(texels, right[i], down[i]);
-            }
-        } else {
-            for (i, value) in values.iter_mut().enumerate() {
-                let texels = self.texels_outside(column.to_array()[i], row.to_array()[i]);
-                *value = bilinear(texels, right[i], down[i]);
-            }
-        }
-        values
-    }
-
-    /// Returns for the first N of four places the mean of the bilinear values at the four places `± across` and
-    /// `± down` from there, each at most half a texel.
-    #[inline(always)]
-    pub(super) fn each_about<const N: usize>(
-        &self,
-        x: f32x4,
-        y: f32x4,
-        across: f32x4,
-        down: f32x4,
-    ) -> [f32x4; N] {
-        let half = f32x4::splat(0.5);
-        // The texel before the one whose centre is nearest.
-        let (column, right) = cells(x - half);
-        let (row, below) = cells(y - half);
-        let (columns, rows) = (2 * self.height as i32, self.height as i32);
-        let inside =
-            column | row | (i32x4::splat(columns - 3) - column) | (i32x4::splat(rows - 3) - row);
-        let [left, middle, right] = three_weights(right - half, across);
-        let [above, level, below] = three_weights(below - half, down);
-        let weigh = |i: usize, rows: [[f32x4; 3]; 3]| {
-            let lane = |weights: f32x4| f32x4::splat(weights.to_array()[i]);
-            let (left, middle, right) = (lane(left), lane(middle), lane(right));
-            let [upper, own, lower] = rows.map(|[a, b, c]| (left * a + middle * b) + right * c);
-            (lane(above) * upper + lane(level) * own) + lane(below) * lower
-        };
+        let outside = column | row | (columns - 2 - column) | (rows - 2 - row);
+        let is_inside = outside.simd_ge(0).all_true();
         let stride = 3 * columns as usize;
-        let starts = row * i32x4::splat(stride as i32) + (column + column + column);
-        let mut values = [f32x4::ZERO; N];
-        if inside.to_bitmask() == 0 {
+        let starts = (row * (stride as i32) + column * 3).to_array();
+        let (left, right, down) = ((1.0 - right).to_array(), right.to_array(), down.to_array());
+        let mut values = [f32x8::splat(simd, 0.0); N];
+        // Loops, since the closures of an array's own methods are not inlined.
+        if is_inside {
             for (i, value) in values.iter_mut().enumerate() {
-                let start = starts.to_array()[i] as u32 as usize;
-                let texels = &self.values[start..start + 2 * stride + 10];
-                let rows = [0, stride, 2 * stride];
-                let three = |row: usize| [row, row + 3, row + 6].map(|texel| four(texels, texel));
-                *value = weigh(i, rows.map(three));
+                let start = starts[i] as u32 as usize;
+                let both = &self.values[start..start + stride + 7];
+                let upper = pair(simd, &both[..4], &both[3..7]);
+                let lower = pair(simd, &both[stride..stride + 4], &both[stride + 3..]);
+                *value = between(simd, (upper, lower), (left[i], right[i], down[i]));
             }
         } else {
+            let (column, row) = (column.to_array(), row.to_array());
             for (i, value) in values.iter_mut().enumerate() {
-                let (column, row) = (column.to_array()[i], row.to_array()[i]);
-                *value = weigh(i, self.three_by_three_outside(column, row));
+                let [a, b, c, d] = self.texels_outside(column[i], row[i]);
+                let (upper, lower) = (pair(simd, &a, &b), pair(simd, &c, &d));
+                *value = between(simd, (upper, lower), (left[i], right[i], down[i]));
             }
         }
         values
-    }
-
-    /// Returns 3 × 3 texels, some of which may lie outside.
-    #[cold]
-    #[inline(never)]
-    fn three_by_three_outside(&self, column: i32, row: i32) -> [[f32x4; 3]; 3] {
-        [0, 1, 2].map(|down| [0, 1, 2].map(|right| self.texel(column, row, (right, down))))
     }
 
     /// Returns a texel, its right neighbour, and the two below them.
     #[cold]
     #[inline(never)]
-    fn texels_outside(&self, column: i32, row: i32) -> [f32x4; 4] {
+    fn texels_outside(&self, column: i32, row: i32) -> [[f32; 4]; 4] {
         [(0, 0), (1, 0), (0, 1), (1, 1)].map(|offset| self.texel(column, row, offset))
     }
 
-    /// Returns the texel to the right of another one and below it, wherever that is.
-    fn texel(&self, column: i32, row: i32, (right, down): (i64, i64)) -> f32x4 {
+    /// Returns the texel to the right of another one and below it, wherever that is, and one value more.
+    fn texel(&self, column: i32, row: i32, (right, down): (i64, i64)) -> [f32; 4] {
         let (width, height) = (2 * self.height as i64, self.height as i64);
         let mut column = i64::from(column) + right;
         let mut row = (i64::from(row) + down).rem_euclid(2 * height);
@@ -139,7 +97,7 @@ impl MipLevel {
             column += height;
         }
         let start = (3 * (row * width + column.rem_euclid(width))) as usize;
-        four(&self.values, start)
+        core::array::from_fn(|i| self.values[start + i])
     }
 
     /// Returns the next smaller level, of half the height, rounded down; none below a height of 1.
@@ -211,48 +169,34 @@ impl MipLevel {
     }
 }
 
-/// Returns the integers below positions, and the distances from these, in [0, 1]. For an integer this may also be the
-/// one below it and a distance of 1.
+/// Returns two texels, one in each half.
 #[inline(always)]
-fn cells(position: f32x4) -> (i32x4, f32x4) {
-    let rounding = f32x4::splat(ROUNDING);
-    let shifted = (position - f32x4::splat(0.5)) + rounding;
-    let below: i32x4 = bytemuck::cast(shifted);
-    (
-        below - i32x4::splat(ROUNDING.to_bits() as i32),
-        position - (shifted - rounding),
-    )
+fn pair<S: Simd>(simd: S, left: &[f32], right: &[f32]) -> f32x8<S> {
+    f32x4::from_slice(simd, left).combine(f32x4::from_slice(simd, right))
 }
 
-/// Loads a texel and one value more.
+/// Returns the halves of the value between two rows of two texels.
 #[inline(always)]
-fn four(values: &[f32], start: usize) -> f32x4 {
-    let four: [f32; 4] = values[start..start + 4].try_into().expect("four values");
-    f32x4::new(four)
+fn between<S: Simd>(
+    simd: S,
+    (upper, lower): (f32x8<S>, f32x8<S>),
+    (left, right, down): (f32, f32, f32),
+) -> f32x8<S> {
+    let share = f32x4::splat(simd, left).combine(f32x4::splat(simd, right));
+    (upper + (lower - upper) * down) * share
 }
 
-/// Returns the value between a texel, its right neighbour, and the two below them.
+/// Returns the integers below positions, and the distances from these.
 #[inline(always)]
-fn bilinear([a, b, c, d]: [f32x4; 4], right: f32, down: f32) -> f32x4 {
-    let (right, down) = (f32x4::splat(right), f32x4::splat(down));
-    let upper = a + (b - a) * right;
-    let lower = c + (d - c) * right;
-    upper + (lower - upper) * down
-}
-
-/// Returns the weights of three neighbours in the mean of two linear interpolations, `spread` before and after a place
-/// that is `off` from the middle one; both are at most ½.
-#[inline(always)]
-fn three_weights(off: f32x4, spread: f32x4) -> [f32x4; 3] {
-    let (half, zero) = (f32x4::splat(0.5), f32x4::splat(0.0));
-    let (first, last) = (off - spread, off + spread);
-    let before = half * ((-first).max(zero) + (-last).max(zero));
-    let after = half * (first.max(zero) + last.max(zero));
-    [before, f32x4::splat(1.0) - before - after, after]
+fn cells<S: Simd>(position: f32x4<S>) -> (i32x4<S>, f32x4<S>) {
+    let below = position.floor();
+    (below.to_int(), position - below)
 }
 
 #[cfg(test)]
 mod tests {
+    use fearless_simd::{Level, dispatch};
+
     use super::*;
 
     /// A level whose texels are all different.
@@ -300,8 +244,15 @@ mod tests {
     fn values_at_and_between_texels() {
         let level = level(4);
         let texel = |column: usize, row: usize| level.values[3 * (8 * row + column)];
-        let at =
-            |x: f32, y: f32| level.each_at::<1>(f32x4::splat(x), f32x4::splat(y))[0].to_array()[0];
+        let at = |x: f32, y: f32| {
+            let simd = Level::baseline();
+            dispatch!(simd, simd => {
+                let place = (f32x4::splat(simd, x), f32x4::splat(simd, y));
+                let [pair] = level.at::<_, 1>(simd, place, (0, 0));
+                let (left, right) = pair.split();
+                (left + right).to_array()[0]
+            })
+        };
         for (column, row) in [(0, 0), (7, 0), (7, 3), (3, 2)] {
             assert_eq!(at(column as f32, row as f32), texel(column, row));
         }

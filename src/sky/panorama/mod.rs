@@ -1,6 +1,7 @@
 //! A longitude–latitude picture of the sky, and its mean over a pixel's footprint.
 
 mod filter;
+pub(crate) mod lattice;
 mod mip_level;
 mod open;
 
