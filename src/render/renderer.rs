@@ -84,7 +84,7 @@ impl<A: SweptAngles> Renderer<A> {
     /// Takes what a sky holds from memory instead of from the files that its scenes name, for all scenes with this sky.
     #[must_use]
     pub fn with_sky(mut self, sky: Sky, source: Arc<SkySource>) -> Self {
-        self.source = (Some(sky), SharedSky::of(source));
+        self.source = (Some(sky), SharedSky::new(Some(source)));
         self
     }
 
@@ -192,7 +192,7 @@ impl<A: SweptAngles> Renderer<A> {
         let curves = self
             .curves
             .get_or_insert_with(|| Isoradials::new(&spec, angles));
-        if form.needs_map() {
+        if form.needs_map(scene) {
             self.map
                 .get_or_insert_with(|| RadiusMap::new(curves, angles));
         }
@@ -252,12 +252,9 @@ impl<A: SweptAngles> Renderer<A> {
         numbers: impl ExactSizeIterator<Item = u32> + Send,
         done: impl Fn(DrawnFrame<'_>) -> Result<(), E> + Sync,
     ) -> Result<(), E> {
-        let frames = Curved::new(animation, &self.angles);
         let (sky, read) = &self.source;
-        let frames = match read.read() {
-            Some(source) if sky.as_ref() == animation.sky() => frames.with_sky(source),
-            _ => frames,
-        };
+        let source = read.read().filter(|_| sky.as_ref() == animation.sky());
+        let frames = Curved::new(animation, &self.angles, source);
         let sharing = Sharing::fastest(numbers.len() as u64, u64::MAX);
         batch::draw(&frames, form, numbers, sharing, |_| true, done)
     }

@@ -28,23 +28,14 @@ pub struct Curved<'a, A> {
 }
 
 impl<'a, A: SweptAngles> Curved<'a, A> {
-    /// Creates the frames of `animation`.
-    pub fn new(animation: &'a Animation, angles: &'a A) -> Self {
+    /// Creates the frames of `animation`. What its sky holds is read when a frame first shows it, where it is not given.
+    pub fn new(animation: &'a Animation, angles: &'a A, sky: Option<Arc<SkySource>>) -> Self {
         Self {
             animation,
             angles,
             block: Mutex::new(None),
             colours: SharedColours::default(),
-            sky: SharedSky::default(),
-        }
-    }
-
-    /// The same frames, with a sky that has been read.
-    #[must_use]
-    pub fn with_sky(self, source: Arc<SkySource>) -> Self {
-        Self {
-            sky: SharedSky::of(source),
-            ..self
+            sky: SharedSky::new(sky),
         }
     }
 
@@ -83,7 +74,7 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
                 let draw = || Isoradials::new(&span.spec, self.angles);
                 let curves = span.curves.get_or_init(draw);
                 let map = || RadiusMap::new(curves, self.angles);
-                let map = form.needs_map().then(|| span.map.get_or_init(map));
+                let map = form.needs_map(&scene).then(|| span.map.get_or_init(map));
                 let needs_escape = form.needs_escape(&scene);
                 (curves, map, needs_escape.then(|| span.sky.get_or_init(sky)))
             }
@@ -91,7 +82,7 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
                 let spec = CurveSpec::new(&scene, &view, scene.tolerance());
                 own = Isoradials::new(&spec, self.angles);
                 let map = || RadiusMap::new(&own, self.angles);
-                own_map = form.needs_map().then(map);
+                own_map = form.needs_map(&scene).then(map);
                 own_sky = form.needs_escape(&scene).then(sky);
                 (&own, own_map.as_ref(), own_sky.as_ref())
             }

@@ -70,9 +70,9 @@ fn star_lights(scene: &Scene, view: &View, source: Option<&SkySource>) -> Vec<[f
 pub(in crate::render) struct SharedSky(OnceLock<Result<Arc<SkySource>, RenderError>>);
 
 impl SharedSky {
-    /// A sky that has been read.
-    pub(in crate::render) fn of(source: Arc<SkySource>) -> Self {
-        Self(OnceLock::from(Ok(source)))
+    /// What has been read, or nothing yet.
+    pub(in crate::render) fn new(read: Option<Arc<SkySource>>) -> Self {
+        Self(read.map_or_else(OnceLock::new, |source| OnceLock::from(Ok(source))))
     }
 
     /// What has been read, if anything has.
