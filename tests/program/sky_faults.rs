@@ -57,8 +57,8 @@ fn is_refused(here: &Path, scene: &str, options: &str, code: i32, words: &[&str]
     }
 }
 
-/// The files of panoramas of 64 × 32 pixels: PNG, JPEG and `OpenEXR`.
-fn pictures(here: &Path) -> [Vec<u8>; 3] {
+/// The files of panoramas of 64 × 32 pixels: PNG, JPEG, `OpenEXR` and Radiance HDR.
+fn pictures(here: &Path) -> [Vec<u8>; 4] {
     let path = here.join("whole");
     let noise = |x: u32, y: u32| {
         let value = x.wrapping_mul(2_654_435_761) ^ y.wrapping_mul(40_503);
@@ -71,9 +71,12 @@ fn pictures(here: &Path) -> [Vec<u8>; 3] {
     });
     write_rgb_file(&path, 64, 32, |x, y| (x as f32, y as f32, 0.5)).unwrap();
     let exr = fs::read(&path).unwrap();
+    let linear = image::DynamicImage::from(picture).to_rgb32f();
+    linear.save_with_format(&path, ImageFormat::Hdr).unwrap();
+    let hdr = fs::read(&path).unwrap();
     fs::remove_file(path).unwrap();
     let [png, jpeg] = encoded;
-    [png, jpeg, exr]
+    [png, jpeg, exr, hdr]
 }
 
 /// A PNG file's header that claims so many pixels, and nothing after it.
@@ -129,22 +132,54 @@ fn a_panorama_that_is_none_is_refused() {
         fs::write(&path, content).unwrap();
         refused(not_a_picture);
     }
-    let damaged = &["damaged or of an unsupported kind"];
+    let cut = &["the file ends early: copy it again"];
     for picture in pictures(here) {
         for length in [picture.len() / 20, picture.len() / 2, picture.len() - 20] {
             fs::write(&path, &picture[..length]).unwrap();
-            refused(damaged);
+            refused(cut);
         }
     }
+    let too_large =
+        ["2000000000 × 1000000000 pixels, and at most 16384 × 8192 are read: make it smaller"];
     for (width, height, words) in [
-        (30_000, 33_333, &["30000 × 33333 pixels", "2:1"][..]),
+        (
+            30_000,
+            33_333,
+            &["30000 × 33333 pixels", "2:1", "equirectangular"][..],
+        ),
         (60_000, 30_000, &["60000 × 30000 pixels", "16384 × 8192"]),
-        (2_000_000_000, 1_000_000_000, &["Memory limit exceeded"]),
-        (2048, 1024, damaged),
+        (2_000_000_000, 1_000_000_000, &too_large),
+        (
+            4_000_000_000,
+            4_000_000_000,
+            &["4000000000 × 4000000000 pixels", "2:1"],
+        ),
+        (2048, 1024, cut),
     ] {
         fs::write(&path, claim(width, height)).unwrap();
         refused(words);
     }
+    fs::write(
+        &path,
+        "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1000000000 +X 2000000000\n",
+    )
+    .unwrap();
+    refused(&too_large);
+    let [png, _, mut exr, _] = pictures(here);
+    let window = [0, 0, 1_999_999_999, 999_999_999_i32];
+    let window: Vec<u8> = window.into_iter().flat_map(i32::to_le_bytes).collect();
+    let mark = b"displayWindow\0box2i\0\x10\0\0\0";
+    let at = exr.windows(mark.len()).position(|bytes| bytes == mark);
+    exr[at.unwrap() + mark.len()..][..16].copy_from_slice(&window);
+    fs::write(&path, exr).unwrap();
+    refused(&too_large);
+    // Whole, but a byte of its pixels is another one.
+    let mut damaged = png.clone();
+    damaged[png.len() / 2] ^= 1;
+    fs::write(&path, damaged).unwrap();
+    refused(&[
+        "damaged or of an unsupported kind: save it again as PNG, JPEG, Radiance HDR or OpenEXR (",
+    ]);
     RgbImage::new(64, 33).save(&path).unwrap();
     refused(&["64 × 33 pixels", "twice as wide as high"]);
 }

@@ -1,5 +1,6 @@
 //! Reads a panorama's file: from its header to linear light.
 
+use std::cell::Cell;
 use std::error::Error;
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
@@ -20,8 +21,8 @@ use crate::sky::{PanoramaProblem, SkyError};
 pub(super) const MOST_ROWS: usize = 8192;
 /// The most light that a texel holds; sums of four stay far within the range of f32.
 const MOST_LIGHT: f64 = 1e30;
-/// The most bytes of a Radiance file's header.
-const MOST_HDR_HEADER: u64 = 1 << 16;
+/// The bytes at a file's start that tell its format and size; the most of a Radiance file's header.
+const HEAD: u64 = 1 << 16;
 
 impl Panorama {
     /// Reads a longitude–latitude picture, all of its light times 2^`exposure_stops`, with at most `max_bytes` of
@@ -65,29 +66,127 @@ fn read(path: &Path, scale: f64, max_bytes: u64) -> Result<MipLevel, PanoramaPro
     if !metadata.is_file() {
         return Err(PanoramaProblem::NotAFile);
     }
-    let mut reader = ImageReader::new(BufReader::new(File::open(path)?)).with_guessed_format()?;
-    let format = reader.format();
-    match format {
-        Some(ImageFormat::OpenExr) => return read_exr(reader.into_inner(), scale, max_bytes),
+    let has_ended = Cell::new(false);
+    let mut file = BufReader::new(Watched {
+        file: File::open(path)?,
+        has_ended: &has_ended,
+    });
+    let mut head = Vec::new();
+    file.by_ref().take(HEAD).read_to_end(&mut head)?;
+    file.rewind()?;
+    has_ended.set(false);
+    let format = image::guess_format(&head).map_err(|_| PanoramaProblem::UnknownFormat)?;
+    // A size that is too large is told before a decoder stumbles over it.
+    let claimed = claimed_size(format, &head);
+    let claimed = claimed.map(|(width, height)| checked_height(width, height));
+    let least = claimed.transpose()?.map_or(0, Panorama::bytes_of);
+    let level = match format {
+        ImageFormat::OpenExr => read_exr(file, scale, max_bytes),
         // The decoder holds all of a JPEG file, and all lines of a Radiance file's header.
-        Some(ImageFormat::Jpeg) => {
-            check_memory(metadata.len(), max_bytes)?;
-            check_jpeg_end(path)?;
+        ImageFormat::Jpeg => check_memory(metadata.len(), max_bytes)
+            .and_then(|()| decode(path, format, file, scale, max_bytes)),
+        ImageFormat::Hdr => {
+            check_hdr_header(&head).and_then(|()| decode(path, format, file, scale, max_bytes))
         }
-        Some(ImageFormat::Hdr) => {
-            let mut file = reader.into_inner();
-            check_hdr_header(&mut file)?;
-            reader = ImageReader::with_format(file, ImageFormat::Hdr);
+        ImageFormat::Png => decode(path, format, file, scale, max_bytes),
+        _ => Err(PanoramaProblem::UnknownFormat),
+    };
+    level.map_err(|problem| match problem {
+        // A decoder that runs out of memory has asked for less than the picture takes.
+        PanoramaProblem::Undecodable(_) if least > max_bytes => PanoramaProblem::Memory {
+            needed: least,
+            allowed: max_bytes,
+        },
+        PanoramaProblem::Undecodable(_) if format == ImageFormat::Jpeg => {
+            check_jpeg_end(path).err().unwrap_or(problem)
         }
-        Some(ImageFormat::Png) => {}
-        _ => return Err(PanoramaProblem::UnknownFormat),
+        PanoramaProblem::Undecodable(_) if has_ended.get() => PanoramaProblem::Truncated,
+        problem => problem,
+    })
+}
+
+/// A file that tells whether more was read than it holds.
+struct Watched<'a> {
+    file: File,
+    has_ended: &'a Cell<bool>,
+}
+
+impl Read for Watched<'_> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let count = self.file.read(bytes)?;
+        if count == 0 && !bytes.is_empty() {
+            self.has_ended.set(true);
+        }
+        Ok(count)
     }
+}
+
+impl Seek for Watched<'_> {
+    fn seek(&mut self, place: SeekFrom) -> io::Result<u64> {
+        self.file.seek(place)
+    }
+}
+
+/// Returns the width and height that a file's first bytes claim, where they are found at once: of JPEG, the decoder
+/// tells them.
+fn claimed_size(format: ImageFormat, head: &[u8]) -> Option<(u64, u64)> {
+    let after = |mark: &[u8]| {
+        let at = head.windows(mark.len()).position(|window| window == mark);
+        at.map(|at| &head[at + mark.len()..])
+    };
+    match format {
+        ImageFormat::Png => {
+            let (numbers, _) = after(b"IHDR")?.as_chunks::<4>();
+            let number = |i: usize| {
+                Some(
+                    numbers
+                        .get(i)?
+                        .iter()
+                        .fold(0, |n, &b| n << 8 | u64::from(b)),
+                )
+            };
+            Some((number(0)?, number(1)?))
+        }
+        ImageFormat::Hdr => {
+            let line = after(b"\n\n")?.split(|&byte| byte == b'\n').next()?;
+            let mut words = str::from_utf8(line).ok()?.split_whitespace();
+            let mut side = |name| {
+                words
+                    .next()
+                    .filter(|word| *word == name)
+                    .and(words.next()?.parse().ok())
+            };
+            let height = side("-Y")?;
+            Some((side("+X")?, height))
+        }
+        ImageFormat::OpenExr => {
+            let (numbers, _) = after(b"displayWindow\0box2i\0\x10\0\0\0")?.as_chunks::<4>();
+            let number = |i: usize| Some(i64::from(i32::from_le_bytes(*numbers.get(i)?)));
+            let side = |from: i64, to: i64| u64::try_from(to - from + 1).ok();
+            Some((side(number(0)?, number(2)?)?, side(number(1)?, number(3)?)?))
+        }
+        _ => None,
+    }
+}
+
+/// Decodes a PNG, JPEG or Radiance file.
+fn decode(
+    path: &Path,
+    format: ImageFormat,
+    file: impl BufRead + Seek,
+    scale: f64,
+    max_bytes: u64,
+) -> Result<MipLevel, PanoramaProblem> {
+    let mut reader = ImageReader::with_format(file, format);
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(max_bytes);
     reader.limits(limits);
     let decoder = reader.into_decoder().map_err(undecodable)?;
     let (width, height) = decoder.dimensions();
     let height = checked_height(width.into(), height.into())?;
+    if format == ImageFormat::Jpeg {
+        check_jpeg_end(path)?;
+    }
     let length = MipLevel::length(height);
     let (colour, pixel_bytes) = (decoder.color_type(), decoder.total_bytes());
     let channels = usize::from(colour.channel_count());
@@ -95,8 +194,8 @@ fn read(path: &Path, scale: f64, max_bytes: u64) -> Result<MipLevel, PanoramaPro
     let kept = Panorama::bytes_of(height);
     match colour.bytes_per_pixel() / colour.channel_count() {
         1 => {
-            let file = if format == Some(ImageFormat::Jpeg) {
-                metadata.len()
+            let file = if format == ImageFormat::Jpeg {
+                fs::metadata(path)?.len()
             } else {
                 0
             };
@@ -234,22 +333,18 @@ fn check_jpeg_end(path: &Path) -> Result<(), PanoramaProblem> {
     let scan = file.windows(2).rposition(|pair| pair == [0xFF, 0xDA]);
     let is_whole =
         scan.is_some_and(|scan| file[scan..].windows(2).any(|pair| pair == [0xFF, 0xD9]));
-    is_whole
-        .then_some(())
-        .ok_or_else(|| undecodable("the file ends early"))
+    is_whole.then_some(()).ok_or(PanoramaProblem::Truncated)
 }
 
-/// Checks that a Radiance file's header ends, by an empty line, before it takes much memory. Leaves the file at its
-/// start.
-fn check_hdr_header(file: &mut (impl Read + Seek)) -> Result<(), PanoramaProblem> {
-    let mut head = Vec::new();
-    file.seek(SeekFrom::Start(0))?;
-    file.by_ref().take(MOST_HDR_HEADER).read_to_end(&mut head)?;
-    file.seek(SeekFrom::Start(0))?;
+/// Checks that a Radiance file's header ends, by an empty line and a line with the size, before it takes much memory.
+fn check_hdr_header(head: &[u8]) -> Result<(), PanoramaProblem> {
     let end = head.windows(2).position(|pair| pair == b"\n\n");
     let size = end.and_then(|end| head[end + 2..].iter().position(|&byte| byte == b'\n'));
-    size.map(|_| ())
-        .ok_or_else(|| undecodable("its header has no end"))
+    match size {
+        Some(_) => Ok(()),
+        None if (head.len() as u64) < HEAD => Err(PanoramaProblem::Truncated),
+        None => Err(undecodable("its header has no end")),
+    }
 }
 
 /// Checks the size in pixels, and returns the height.
@@ -277,5 +372,5 @@ fn check_memory(needed: u64, allowed: u64) -> Result<(), PanoramaProblem> {
 }
 
 fn undecodable(reason: impl Into<Box<dyn Error>>) -> PanoramaProblem {
-    PanoramaProblem::Undecodable(quotation::beginning(&reason.into().to_string(), 200))
+    PanoramaProblem::Undecodable(quotation::beginning(&reason.into().to_string(), 120))
 }
