@@ -211,8 +211,10 @@ impl<A: SweptAngles> Renderer<A> {
             if self.sky.as_ref().is_some_and(|(had, _)| has_light && !had) {
                 self.sky = None;
             }
-            let new = || (has_light, SkyAtRadius::new(scene, view, source, angles));
-            let (_, radius) = self.sky.get_or_insert_with(new);
+            let (_, radius) = self.sky.get_or_insert_with(|| {
+                let radius = SkyAtRadius::new(scene, view, source, angles, Threads::All);
+                (has_light, radius)
+            });
             Some(FrameSky::at_radius(radius, scene, view, source, form))
         } else {
             None

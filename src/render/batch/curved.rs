@@ -68,7 +68,12 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
         let block = self.block(number);
         let source = self.sky.source(&scene, form)?;
         let (own, own_map, own_sky);
-        let sky = || SkyAtRadius::new(&scene, &view, source, self.angles);
+        let threads = if on_all_threads {
+            Threads::All
+        } else {
+            Threads::This
+        };
+        let sky = || SkyAtRadius::new(&scene, &view, source, self.angles, threads);
         let (curves, map, sky) = match block.span(number) {
             Some(span) if span.is_shared() => {
                 let draw = || Isoradials::new(&span.spec, self.angles);
@@ -95,11 +100,7 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
             sky: sky.map(|sky| FrameSky::at_radius(sky, &scene, &view, source, form)),
             colours: self.colours.of(&scene, form),
             angles: self.angles,
-            threads: if on_all_threads {
-                Threads::All
-            } else {
-                Threads::This
-            },
+            threads,
         };
         let time = start.elapsed();
         let report = frame.draw(workspace, target)?;
