@@ -79,18 +79,22 @@ fn pictures(here: &Path) -> [Vec<u8>; 4] {
     [png, jpeg, exr, hdr]
 }
 
+/// A chunk of a PNG file.
+#[expect(clippy::big_endian_bytes, reason = "PNG is big-endian")]
+fn chunk(name: &[u8; 4], content: &[u8]) -> Vec<u8> {
+    let named = [name, content].concat();
+    let mut crc = flate2::Crc::new();
+    crc.update(&named);
+    let (length, sum) = (content.len() as u32, crc.sum());
+    [&length.to_be_bytes(), &named[..], &sum.to_be_bytes()].concat()
+}
+
 /// A PNG file's header that claims so many pixels, and nothing after it.
 #[expect(clippy::big_endian_bytes, reason = "PNG is big-endian")]
 fn claim(width: u32, height: u32) -> Vec<u8> {
-    let mut bytes = b"\x89PNG\r\n\x1A\n\0\0\0\x0D".to_vec();
-    let mut chunk = b"IHDR".to_vec();
-    chunk.extend(width.to_be_bytes());
-    chunk.extend(height.to_be_bytes());
-    chunk.extend([8, 2, 0, 0, 0]);
-    let mut crc = flate2::Crc::new();
-    crc.update(&chunk);
-    bytes.extend(&chunk);
-    bytes.extend(crc.sum().to_be_bytes());
+    let size = [width.to_be_bytes(), height.to_be_bytes()].concat();
+    let header = chunk(b"IHDR", &[&size[..], &[8, 2, 0, 0, 0]].concat());
+    let mut bytes = [b"\x89PNG\r\n\x1A\n", &header[..]].concat();
     // A chunk of pixels begins, and the file ends.
     bytes.extend(b"\0\0\x10\0IDAT");
     bytes
@@ -182,6 +186,29 @@ fn a_panorama_that_is_none_is_refused() {
     ]);
     RgbImage::new(64, 33).save(&path).unwrap();
     refused(&["64 × 33 pixels", "twice as wide as high"]);
+}
+
+/// A colour profile of a kilobyte or two may claim to hold a gigabyte. It is ignored, and takes no memory.
+#[test]
+fn a_panoramas_colour_profile_takes_no_memory() {
+    let folder = prepared();
+    let here = folder.path();
+    // Zeros in blocks that do not refer to the ones before.
+    let (zeros, mut block) = (vec![0; 1 << 20], Vec::with_capacity(1 << 16));
+    let mut compress = flate2::Compress::new(flate2::Compression::best(), false);
+    let flush = flate2::FlushCompress::Full;
+    compress.compress_vec(&zeros, &mut block, flush).unwrap();
+    let profile = [b"x\0\0\x78\x9C", &block.repeat(1024)[..]].concat();
+    let [png, ..] = pictures(here);
+    let (head, rest) = png.split_at(8 + 25);
+    let bomb = [head, &chunk(b"iCCP", &profile), rest].concat();
+    fs::write(here.join("sky.png"), bomb).unwrap();
+    let output = limited(here, "render p.toml -o a.raw");
+    assert!(output.status.success(), "{output:?}");
+    let bombed = fs::read(here.join("a.raw")).unwrap();
+    fs::write(here.join("sky.png"), png).unwrap();
+    done(here, &["render", "p.toml", "-o", "b.raw"]);
+    assert!(fs::read(here.join("b.raw")).unwrap() == bombed);
 }
 
 #[test]

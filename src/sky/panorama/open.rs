@@ -21,6 +21,9 @@ use crate::sky::{PanoramaProblem, SkyError};
 pub(super) const MOST_ROWS: usize = 8192;
 /// The most light that a texel holds; sums of four stay far within the range of f32.
 const MOST_LIGHT: f64 = 1e30;
+/// The most bytes that a PNG decoder takes beside the pixels, for rows and chunks. It inflates colour profiles, though
+/// none is used: one that is larger is left out.
+const MOST_ASIDE: u64 = 64 << 20;
 /// The bytes at a file's start that tell its format and size; the most of a Radiance file's header.
 const HEAD: u64 = 1 << 16;
 
@@ -179,7 +182,7 @@ fn decode(
 ) -> Result<MipLevel, PanoramaProblem> {
     let mut reader = ImageReader::with_format(file, format);
     let mut limits = Limits::no_limits();
-    limits.max_alloc = Some(max_bytes);
+    limits.max_alloc = Some(max_bytes.min(MOST_ASIDE));
     reader.limits(limits);
     let decoder = reader.into_decoder().map_err(undecodable)?;
     let (width, height) = decoder.dimensions();
@@ -342,7 +345,10 @@ fn check_hdr_header(head: &[u8]) -> Result<(), PanoramaProblem> {
     let size = end.and_then(|end| head[end + 2..].iter().position(|&byte| byte == b'\n'));
     match size {
         Some(_) => Ok(()),
-        None if (head.len() as u64) < HEAD => Err(PanoramaProblem::Truncated),
+        // With carriage returns the header ends otherwise, and no decoder reads it.
+        None if (head.len() as u64) < HEAD && !head.contains(&b'\r') => {
+            Err(PanoramaProblem::Truncated)
+        }
         None => Err(undecodable("its header has no end")),
     }
 }
