@@ -16,9 +16,9 @@
 //! ```
 //!
 //! This is exact for lines of constant width. It tends to the share 2r in wide footprints. Where a footprint meets one
-//! edge at most, the mean is the share on its inner side, to all digits however small the footprint is. Meridians take their mean
-//! width over the footprint. Where lines cross, the part of the footprint in both is a polygon; its part in a disc is
-//! the sum of four triangles and sectors.
+//! edge at most, the mean is the share on its inner side, to all digits however small the footprint is. Meridians take
+//! their mean width over the footprint. Where lines cross, the part of the footprint in both is a polygon; its part in
+//! a disc is the sum of four triangles and sectors.
 
 use std::f64::consts::PI;
 

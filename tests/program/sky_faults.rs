@@ -81,7 +81,7 @@ fn pictures(here: &Path) -> [Vec<u8>; 4] {
 
 /// A chunk of a PNG file.
 #[expect(clippy::big_endian_bytes, reason = "PNG is big-endian")]
-fn chunk(name: &[u8; 4], content: &[u8]) -> Vec<u8> {
+fn chunk(name: &[u8], content: &[u8]) -> Vec<u8> {
     let named = [name, content].concat();
     let mut crc = flate2::Crc::new();
     crc.update(&named);

@@ -28,7 +28,7 @@ pub struct Curved<'a, A> {
 }
 
 impl<'a, A: SweptAngles> Curved<'a, A> {
-    /// Creates the frames of `animation`. What its sky holds is read when a frame first shows it, where it is not given.
+    /// Creates the frames of `animation`. Where no sky is given, its files are read when a frame first shows it.
     pub fn new(animation: &'a Animation, angles: &'a A, sky: Option<Arc<SkySource>>) -> Self {
         Self {
             animation,

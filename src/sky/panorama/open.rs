@@ -1,15 +1,19 @@
 //! Reads a panorama's file: from its header to linear light.
 
+mod header;
+
 use std::cell::Cell;
 use std::error::Error;
 use std::fs::{self, File};
-use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
+use std::io::{self, BufRead, BufReader, Read, Seek};
 use std::path::Path;
 
 use exr::block::reader::Reader as ExrReader;
 use exr::prelude::{ReadChannels, ReadLayers, Vec2};
 use image::{ImageDecoder, ImageFormat, ImageReader, Limits};
 use rayon::prelude::*;
+
+use header::{HEAD, Watched, check_hdr_header, check_jpeg_end, claimed_size};
 
 use super::Panorama;
 use super::mip_level::MipLevel;
@@ -24,8 +28,6 @@ const MOST_LIGHT: f64 = 1e30;
 /// The most bytes that a PNG decoder takes beside the pixels, for rows and chunks. It inflates colour profiles, though
 /// none is used: one that is larger is left out.
 const MOST_ASIDE: u64 = 64 << 20;
-/// The bytes at a file's start that tell its format and size; the most of a Radiance file's header.
-const HEAD: u64 = 1 << 16;
 
 impl Panorama {
     /// Reads a longitude–latitude picture, all of its light times 2^`exposure_stops`, with at most `max_bytes` of
@@ -83,16 +85,17 @@ fn read(path: &Path, scale: f64, max_bytes: u64) -> Result<MipLevel, PanoramaPro
     let claimed = claimed_size(format, &head);
     let claimed = claimed.map(|(width, height)| checked_height(width, height));
     let least = claimed.transpose()?.map_or(0, Panorama::bytes_of);
-    let level = match format {
-        ImageFormat::OpenExr => read_exr(file, scale, max_bytes),
-        // The decoder holds all of a JPEG file, and all lines of a Radiance file's header.
-        ImageFormat::Jpeg => check_memory(metadata.len(), max_bytes)
-            .and_then(|()| decode(path, format, file, scale, max_bytes)),
-        ImageFormat::Hdr => {
-            check_hdr_header(&head).and_then(|()| decode(path, format, file, scale, max_bytes))
-        }
-        ImageFormat::Png => decode(path, format, file, scale, max_bytes),
-        _ => Err(PanoramaProblem::UnknownFormat),
+    // The decoder holds all of a JPEG file, and all lines of a Radiance file's header.
+    match format {
+        ImageFormat::Png | ImageFormat::OpenExr => {}
+        ImageFormat::Jpeg => check_memory(metadata.len(), max_bytes)?,
+        ImageFormat::Hdr => check_hdr_header(&head)?,
+        _ => return Err(PanoramaProblem::UnknownFormat),
+    }
+    let level = if format == ImageFormat::OpenExr {
+        read_exr(file, scale, max_bytes)
+    } else {
+        decode(path, format, file, scale, max_bytes)
     };
     level.map_err(|problem| match problem {
         // A decoder that runs out of memory has asked for less than the picture takes.
@@ -106,70 +109,6 @@ fn read(path: &Path, scale: f64, max_bytes: u64) -> Result<MipLevel, PanoramaPro
         PanoramaProblem::Undecodable(_) if has_ended.get() => PanoramaProblem::Truncated,
         problem => problem,
     })
-}
-
-/// A file that tells whether more was read than it holds.
-struct Watched<'a> {
-    file: File,
-    has_ended: &'a Cell<bool>,
-}
-
-impl Read for Watched<'_> {
-    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        let count = self.file.read(bytes)?;
-        if count == 0 && !bytes.is_empty() {
-            self.has_ended.set(true);
-        }
-        Ok(count)
-    }
-}
-
-impl Seek for Watched<'_> {
-    fn seek(&mut self, place: SeekFrom) -> io::Result<u64> {
-        self.file.seek(place)
-    }
-}
-
-/// Returns the width and height that a file's first bytes claim, where they are found at once: of JPEG, the decoder
-/// tells them.
-fn claimed_size(format: ImageFormat, head: &[u8]) -> Option<(u64, u64)> {
-    let after = |mark: &[u8]| {
-        let at = head.windows(mark.len()).position(|window| window == mark);
-        at.map(|at| &head[at + mark.len()..])
-    };
-    match format {
-        ImageFormat::Png => {
-            let (numbers, _) = after(b"IHDR")?.as_chunks::<4>();
-            let number = |i: usize| {
-                Some(
-                    numbers
-                        .get(i)?
-                        .iter()
-                        .fold(0, |n, &b| n << 8 | u64::from(b)),
-                )
-            };
-            Some((number(0)?, number(1)?))
-        }
-        ImageFormat::Hdr => {
-            let line = after(b"\n\n")?.split(|&byte| byte == b'\n').next()?;
-            let mut words = str::from_utf8(line).ok()?.split_whitespace();
-            let mut side = |name| {
-                words
-                    .next()
-                    .filter(|word| *word == name)
-                    .and(words.next()?.parse().ok())
-            };
-            let height = side("-Y")?;
-            Some((side("+X")?, height))
-        }
-        ImageFormat::OpenExr => {
-            let (numbers, _) = after(b"displayWindow\0box2i\0\x10\0\0\0")?.as_chunks::<4>();
-            let number = |i: usize| Some(i64::from(i32::from_le_bytes(*numbers.get(i)?)));
-            let side = |from: i64, to: i64| u64::try_from(to - from + 1).ok();
-            Some((side(number(0)?, number(2)?)?, side(number(1)?, number(3)?)?))
-        }
-        _ => None,
-    }
 }
 
 /// Decodes a PNG, JPEG or Radiance file.
@@ -327,30 +266,6 @@ fn read_exr(
         .from_chunks(reader)
         .map_err(undecodable)?;
     Ok(MipLevel::new(height, image.layer_data.channel_data.pixels))
-}
-
-/// Checks that a JPEG file's last scan ends: the decoder fills with grey what a file that was cut short lacks.
-fn check_jpeg_end(path: &Path) -> Result<(), PanoramaProblem> {
-    // Within a scan no other byte than 0 or a restart marker follows 0xFF.
-    let file = fs::read(path)?;
-    let scan = file.windows(2).rposition(|pair| pair == [0xFF, 0xDA]);
-    let is_whole =
-        scan.is_some_and(|scan| file[scan..].windows(2).any(|pair| pair == [0xFF, 0xD9]));
-    is_whole.then_some(()).ok_or(PanoramaProblem::Truncated)
-}
-
-/// Checks that a Radiance file's header ends, by an empty line and a line with the size, before it takes much memory.
-fn check_hdr_header(head: &[u8]) -> Result<(), PanoramaProblem> {
-    let end = head.windows(2).position(|pair| pair == b"\n\n");
-    let size = end.and_then(|end| head[end + 2..].iter().position(|&byte| byte == b'\n'));
-    match size {
-        Some(_) => Ok(()),
-        // With carriage returns the header ends otherwise, and no decoder reads it.
-        None if (head.len() as u64) < HEAD && !head.contains(&b'\r') => {
-            Err(PanoramaProblem::Truncated)
-        }
-        None => Err(undecodable("its header has no end")),
-    }
 }
 
 /// Checks the size in pixels, and returns the height.

@@ -78,8 +78,8 @@ impl Record {
     /// Splits a line, which ends with a line feed, into fields.
     ///
     /// # Errors
-    /// A reason if a quotation mark is not closed, if the line has more than 1024 fields, or if a carriage return ends a
-    /// line within it.
+    /// A reason if a quotation mark is not closed, if the line has more than 1024 fields, or if it has more after a
+    /// carriage return.
     pub(super) fn parse(&mut self, line: &[u8]) -> Result<(), String> {
         self.reader.reset();
         let (result, read, _, field_count) =
