@@ -90,8 +90,8 @@ fn main() {
                 return;
             };
             let (alone, side_by_side) = (
-                Curved::new(&animation, &Exact),
-                Curved::new(&animation, &Exact),
+                Curved::new(&animation, &Exact, None),
+                Curved::new(&animation, &Exact, None),
             );
             let draw = |frames: &Curved<'_, Exact>| {
                 let all = FrameRange::up_to(FRAMES);

@@ -35,6 +35,8 @@ pub struct Needs {
 pub struct Candidate {
     /// One of [`Spec::NAMES`].
     pub name: &'static str,
+    /// The greatest error of its angles, in radians.
+    pub error: f64,
     /// The most that its error moves an edge, in pixels.
     pub displacement: f64,
     /// Whether that is at most half of the scene's tolerance, and the table is fine enough for light and data where the
@@ -47,7 +49,8 @@ impl Needs {
     pub fn new(scene: &Scene, view: &View, form: Form) -> Self {
         let spec = CurveSpec::new(scene, view, scene.tolerance());
         let sensitivity = sensitivity(&spec, &Exact);
-        let coarsest = if form.needs_map() || form.shows_directions() {
+        let shows_data = form.needs_map(scene) || form.shows_directions();
+        let coarsest = if form.shows_light() || shows_data {
             Spec::standard().tolerance
         } else {
             f64::INFINITY
@@ -57,6 +60,7 @@ impl Needs {
             let displacement = sensitivity * error;
             Some(Candidate {
                 name,
+                error,
                 displacement,
                 is_enough: displacement <= 0.5 * spec.tolerance && error <= coarsest,
             })

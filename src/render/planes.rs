@@ -44,16 +44,20 @@ pub enum Form {
 }
 
 impl Form {
-    /// Whether it shows more of the disk than where it is.
-    pub fn needs_map(self) -> bool {
+    /// Whether it shows more of a scene's disk than where it is: its light, or data of the rays that meet it. Before a
+    /// sky a disk without light is white everywhere.
+    pub fn needs_map(self, scene: &Scene) -> bool {
         match self {
             Self::Grey8 | Self::Grey16 => false,
-            Self::Rgb8 | Self::Rgb16 => true,
-            Self::Layers(layers) => layers.iter().any(|layer| {
-                !matches!(
-                    layer,
-                    Layer::Coverage | Layer::Order | Layer::Sky | Layer::SkyUv | Layer::Alpha
-                )
+            Self::Rgb8 | Self::Rgb16 => scene.light().is_some(),
+            Self::Layers(layers) => layers.iter().any(|layer| match layer {
+                Layer::Coverage | Layer::Order | Layer::Sky | Layer::SkyUv | Layer::Alpha => false,
+                Layer::Colour => scene.light().is_some(),
+                Layer::Radius
+                | Layer::Azimuth
+                | Layer::Redshift
+                | Layer::EmissionCosine
+                | Layer::Temperature => true,
             }),
         }
     }

@@ -84,7 +84,7 @@ impl<A: SweptAngles> Renderer<A> {
     /// Takes what a sky holds from memory instead of from the files that its scenes name, for all scenes with this sky.
     #[must_use]
     pub fn with_sky(mut self, sky: Sky, source: Arc<SkySource>) -> Self {
-        self.source = (Some(sky), SharedSky::of(source));
+        self.source = (Some(sky), SharedSky::new(Some(source)));
         self
     }
 
@@ -192,7 +192,7 @@ impl<A: SweptAngles> Renderer<A> {
         let curves = self
             .curves
             .get_or_insert_with(|| Isoradials::new(&spec, angles));
-        if form.needs_map() {
+        if form.needs_map(scene) {
             self.map
                 .get_or_insert_with(|| RadiusMap::new(curves, angles));
         }
@@ -211,8 +211,10 @@ impl<A: SweptAngles> Renderer<A> {
             if self.sky.as_ref().is_some_and(|(had, _)| has_light && !had) {
                 self.sky = None;
             }
-            let new = || (has_light, SkyAtRadius::new(scene, view, source, angles));
-            let (_, radius) = self.sky.get_or_insert_with(new);
+            let (_, radius) = self.sky.get_or_insert_with(|| {
+                let radius = SkyAtRadius::new(scene, view, source, angles, Threads::All);
+                (has_light, radius)
+            });
             Some(FrameSky::at_radius(radius, scene, view, source, form))
         } else {
             None
@@ -252,12 +254,9 @@ impl<A: SweptAngles> Renderer<A> {
         numbers: impl ExactSizeIterator<Item = u32> + Send,
         done: impl Fn(DrawnFrame<'_>) -> Result<(), E> + Sync,
     ) -> Result<(), E> {
-        let frames = Curved::new(animation, &self.angles);
         let (sky, read) = &self.source;
-        let frames = match read.read() {
-            Some(source) if sky.as_ref() == animation.sky() => frames.with_sky(source),
-            _ => frames,
-        };
+        let source = read.read().filter(|_| sky.as_ref() == animation.sky());
+        let frames = Curved::new(animation, &self.angles, source);
         let sharing = Sharing::fastest(numbers.len() as u64, u64::MAX);
         batch::draw(&frames, form, numbers, sharing, |_| true, done)
     }

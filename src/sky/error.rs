@@ -31,14 +31,20 @@ pub enum PanoramaProblem {
     #[error("this is not a regular file")]
     NotAFile,
     /// The file does not begin as one of the formats that are read.
-    #[error("this is not a PNG, JPEG, Radiance HDR or OpenEXR picture")]
+    #[error("this is not a PNG, JPEG, Radiance HDR or OpenEXR picture: save it as one of these")]
     UnknownFormat,
-    /// The file breaks its format's rules, ends early, or uses what is not supported.
-    #[error("the picture is damaged or of an unsupported kind: {0}")]
+    /// The file ends before its last pixel.
+    #[error("the file ends early: copy it again, or save the picture again")]
+    Truncated,
+    /// The file breaks its format's rules, or uses what is not supported. The decoder's reason is in parentheses.
+    #[error(
+        "the picture is damaged or of an unsupported kind: save it again as PNG, JPEG, Radiance HDR or OpenEXR ({0})"
+    )]
     Undecodable(String),
     /// The picture has no panorama's shape.
     #[error(
-        "the picture has {width} × {height} pixels, and a panorama is twice as wide as high (2:1)"
+        "the picture has {width} × {height} pixels, and a panorama is twice as wide as high (2:1): choose an \
+         equirectangular one"
     )]
     Shape {
         /// Its width in pixels.

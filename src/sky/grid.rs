@@ -15,9 +15,10 @@
 //! G(x) = r y (1 − y) + ½ max(r − y, 0)²,    y the distance of x from the nearest integer
 //! ```
 //!
-//! This is exact for lines of constant width. It tends to the share 2r in wide footprints. Meridians take their mean
-//! width over the footprint. Where lines cross, the part of the footprint in both is a polygon; its part in a disc is
-//! the sum of four triangles and sectors.
+//! This is exact for lines of constant width. It tends to the share 2r in wide footprints. Where a footprint meets one
+//! edge at most, the mean is the share on its inner side, to all digits however small the footprint is. Meridians take
+//! their mean width over the footprint. Where lines cross, the part of the footprint in both is a polygon; its part in
+//! a disc is the sum of four triangles and sectors.
 
 use std::f64::consts::PI;
 

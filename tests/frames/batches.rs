@@ -69,9 +69,9 @@ fn a_frame_is_the_same_alone_in_a_chunk_and_among_all() {
         for antialias in [true, false] {
             let animation = animation(name, 300).with_antialias(antialias).unwrap();
             // A worker anew for each, as another process is.
-            let all = drawn(&Curved::new(&animation, &Exact), "1-300x9", 3);
+            let all = drawn(&Curved::new(&animation, &Exact, None), "1-300x9", 3);
             for (range, threads) in [("1-300x9", 1), ("253-262:9", 2), ("1-30x9,298-300x9", 3)] {
-                let some = drawn(&Curved::new(&animation, &Exact), range, threads);
+                let some = drawn(&Curved::new(&animation, &Exact, None), range, threads);
                 assert!(!some.is_empty());
                 for (number, pixels) in some {
                     assert!(
@@ -81,7 +81,11 @@ fn a_frame_is_the_same_alone_in_a_chunk_and_among_all() {
                 }
             }
             for number in [1, 253, 262] {
-                let alone = drawn(&Curved::new(&animation, &Exact), &number.to_string(), 2);
+                let alone = drawn(
+                    &Curved::new(&animation, &Exact, None),
+                    &number.to_string(),
+                    2,
+                );
                 if let Some(frame) = all.get(&number) {
                     assert!(*frame == alone[&number], "{name}, frame {number}");
                 }
@@ -102,8 +106,8 @@ fn shared_curves_draw_what_a_frames_own_do() {
         animation("orbit", 24).with_antialias(false).unwrap(),
         Animation::from_toml(zoom).unwrap(),
     ] {
-        let frames = drawn(&Curved::new(&animation, &Exact), "1-24", 2);
-        let by_rays = drawn(&RayByRay::new(&animation, &Exact, &|| ()), "1-24", 2);
+        let frames = drawn(&Curved::new(&animation, &Exact, None), "1-24", 2);
+        let by_rays = drawn(&RayByRay::new(&animation, &Exact, None, &|| ()), "1-24", 2);
         assert!(frames == by_rays);
         for (number, frame) in frames {
             let scene = animation.frame(number).unwrap();
@@ -117,7 +121,7 @@ fn shared_curves_draw_what_a_frames_own_do() {
             // Shared curves are finer: an edge moves by less than the tolerance, a grey by one.
             let smooth = coverage::render(&view, &own).unwrap();
             let shared = animation.clone().with_antialias(true).unwrap();
-            let shared = drawn(&Curved::new(&shared, &Exact), &number.to_string(), 1);
+            let shared = drawn(&Curved::new(&shared, &Exact, None), &number.to_string(), 1);
             let apart = |(a, b): (&u8, &u8)| a.abs_diff(*b);
             let most = smooth.iter().zip(&shared[&number]).map(apart).max();
             assert!(most <= Some(1), "frame {number}: {most:?}");
@@ -131,14 +135,14 @@ fn a_scene_that_does_not_move_is_the_picture() {
         .unwrap()
         .with_size(160, 90)
         .unwrap();
-    let frame = drawn(&Curved::new(&still, &Exact), "1", 2);
+    let frame = drawn(&Curved::new(&still, &Exact, None), "1", 2);
     let scene = Scene::load("classic").unwrap().with_size(160, 90).unwrap();
     let view = View::new(&scene);
     let spec = CurveSpec::new(&scene, &view, scene.tolerance());
     let curves = Isoradials::new(&spec, &Exact);
     assert!(frame[&1] == coverage::render(&view, &curves).unwrap());
     let hard = still.with_antialias(false).unwrap();
-    let frame = drawn(&Curved::new(&hard, &Exact), "1", 2);
+    let frame = drawn(&Curved::new(&hard, &Exact, None), "1", 2);
     assert!(frame[&1] == pixelwise::render(&scene, &view, &Exact, &|| ()).unwrap());
 }
 
@@ -154,7 +158,7 @@ fn a_failure_ends_the_batch_if_it_is_told_to() {
     let falling = falling.replace("frames = 400", "frames = 401\ninterpolation = \"linear\"");
     let falling = falling.replacen("interpolation = \"smooth\"\n", "", 1);
     let falling = Animation::from_toml(&falling).unwrap();
-    let frames = Curved::new(&falling, &Exact);
+    let frames = Curved::new(&falling, &Exact, None);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(2)
         .build()
@@ -205,7 +209,7 @@ fn frames_that_are_not_wanted_are_passed_over() {
     };
     let range = FrameRange::up_to(40);
     batch::draw(
-        &Curved::new(&orbit, &Exact),
+        &Curved::new(&orbit, &Exact, None),
         Form::Grey8,
         range.iter(),
         fastest(&range),

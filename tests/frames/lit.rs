@@ -100,7 +100,7 @@ fn drawn_by_rays(scene: &Scene, orbits: &impl Orbits, form: Form) -> FrameMemory
     assert_eq!(still.frame(1).unwrap().to_toml(), scene.to_toml());
     let mut memory = FrameMemory::new(form);
     let row_done = || ();
-    let frames = RayByRay::new(&still, orbits, &row_done);
+    let frames = RayByRay::new(&still, orbits, None, &row_done);
     let workspace = &mut Workspace::default();
     frames.draw(1, true, workspace, &mut memory).unwrap();
     memory

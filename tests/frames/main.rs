@@ -3,6 +3,8 @@
 
 #[path = "../common/natural.rs"]
 mod natural;
+#[path = "../common/noise.rs"]
+mod noise;
 #[path = "../common/process.rs"]
 mod process;
 #[path = "../common/quadrature.rs"]

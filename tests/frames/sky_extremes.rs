@@ -10,12 +10,13 @@ use darkness::scene::{
 use darkness::sky::{Panorama, SkySource, StarColours, StarField};
 use glam::DVec3;
 
-use crate::sky_views::{Random, position};
+use crate::noise::Random;
+use crate::sky_views::position;
 use crate::tables::table;
 
 fn noise() -> Panorama {
     let mut random = Random(3);
-    let texels = (0..6 * 64 * 64).map(|_| random.next() as f32).collect();
+    let texels = (0..6 * 64 * 64).map(|_| random.number() as f32).collect();
     Panorama::from_linear(64, texels)
 }
 

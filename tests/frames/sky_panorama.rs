@@ -11,60 +11,18 @@ use darkness::render::{Form, Pixels};
 use darkness::scene::{Animation, Camera, ImageSize, Layer, LayerSet, Scene, Sky, SkyFile, View};
 use darkness::sky::{Panorama, SkySource, place};
 
+use crate::noise::{Random, one_over_f};
 use crate::tables::table;
 
 /// Rays a side of a pixel.
 const RAYS: u32 = 64;
 
-/// A repeatable sequence of numbers from 0 to 1 (`SplitMix64`).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f32 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 40) as f32 / (1 << 24) as f32
-    }
-}
-
-/// 1/f noise from 0 to 1: as much of it in each octave, down to single texels.
+/// A panorama of 1/f noise from 0 to 1, each channel by itself.
 fn noise(height: usize) -> Panorama {
-    let width = 2 * height;
     let mut random = Random(7);
-    let mut texels = vec![0.0_f32; 3 * width * height];
-    let mut cell = height / 2;
-    while cell >= 1 {
-        let (columns, rows) = (width / cell, height / cell + 2);
-        let lattice: Vec<[f32; 3]> = (0..columns * rows)
-            .map(|_| [random.next(), random.next(), random.next()])
-            .collect();
-        for y in 0..height {
-            for x in 0..width {
-                let (cx, cy) = (x / cell, y / cell);
-                let (fx, fy) = (
-                    (x % cell) as f32 / cell as f32,
-                    (y % cell) as f32 / cell as f32,
-                );
-                for c in 0..3 {
-                    let at =
-                        |i: usize, j: usize| lattice[(cy + j) * columns + (cx + i) % columns][c];
-                    let top = at(0, 0) + fx * (at(1, 0) - at(0, 0));
-                    let bottom = at(0, 1) + fx * (at(1, 1) - at(0, 1));
-                    texels[3 * (y * width + x) + c] += top + fy * (bottom - top);
-                }
-            }
-        }
-        cell /= 2;
-    }
-    let (least, most) = texels
-        .iter()
-        .fold((f32::MAX, f32::MIN), |(a, b), &t| (a.min(t), b.max(t)));
-    for texel in &mut texels {
-        *texel = (*texel - least) / (most - least);
-    }
-    Panorama::from_linear(height, texels)
+    let channels = [(); 3].map(|()| one_over_f(height, &mut random));
+    let texels = (0..2 * height * height).flat_map(|i| channels.each_ref().map(|c| c[i] as f32));
+    Panorama::from_linear(height, texels.collect())
 }
 
 fn sky() -> Sky {

@@ -11,7 +11,8 @@ use darkness::sky::{Orientation, SkySource, Star, StarColours, StarField};
 use darkness::table::Lookup;
 use glam::DVec3;
 
-use crate::sky_views::{ExactRays, Random, derivative, light_of, looking, position, solid_angle};
+use crate::noise::Random;
+use crate::sky_views::{ExactRays, derivative, light_of, looking, position, solid_angle};
 use crate::tables::table;
 
 /// The largest side of a pixel in X and Y. The renderer takes its solid angle at its centre, which is off by a
@@ -290,14 +291,14 @@ fn images_are_where_exact_rays_say_and_as_bright() {
             let mut worst = Worst::default();
             for _ in 0..25 {
                 // Uniform over the sky.
-                let theta = libm::acos(1.0 - 2.0 * random.next());
+                let theta = libm::acos(1.0 - 2.0 * random.number());
                 let angle = f64::from(order) * PI
                     + if order.is_multiple_of(2) {
                         theta
                     } else {
                         PI - theta
                     };
-                let image = image(&rays, position, angle, TAU * random.next());
+                let image = image(&rays, position, angle, TAU * random.number());
                 let from_axis = theta.min(PI - theta) / rays.rate(image.psi);
                 let side = (0.1 * (image.psi - rays.critical))
                     .min(0.1 * from_axis)

@@ -12,19 +12,6 @@ use darkness::scene::{Camera, ImageSize, Layer, LayerSet, Scene, Sky, View};
 use darkness::sky::SkySource;
 use glam::DVec3;
 
-/// A repeatable sequence of numbers from 0 to 1 (`SplitMix64`).
-pub(crate) struct Random(pub(crate) u64);
-
-impl Random {
-    pub(crate) fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
-
 /// An oblique place at a radius.
 pub(crate) fn position(radius: f64) -> DVec3 {
     DVec3::new(0.62, -0.53, 0.41).normalize() * radius

@@ -81,7 +81,7 @@ fn directions_need_the_standard_table() {
             let form = Form::Layers(LayerSet::default().with(layer));
             let needs = Needs::new(&scene, &View::new(&scene), form);
             assert_eq!(needs.table().unwrap().name, "standard");
-            assert!(!form.needs_map());
+            assert!(!form.needs_map(&scene));
         }
     }
 }
@@ -104,6 +104,14 @@ fn before_a_sky_a_disk_without_light_is_white() {
         }
         assert!(shares.contains(&1.0) && shares.contains(&0.0));
     }
+    // Where the renderer has a map, as for data of the scene before, its bytes are the same.
+    let form = Form::Layers([Layer::Coverage, Layer::Colour].into_iter().collect());
+    assert!(!form.needs_map(&classic) && !Form::Rgb8.needs_map(&classic));
+    let picture = renderer.render_rgb(&classic).unwrap();
+    let data = LayerSet::default().with(Layer::Redshift);
+    assert!(Form::Layers(data).needs_map(&classic));
+    renderer.render_layers(&classic, data).unwrap();
+    assert!(renderer.render_rgb(&classic).unwrap() == picture);
     // Without a sky it has no colour.
     let black = classic.with_sky(None).unwrap();
     assert!(renderer.render_rgb(&black).is_err());

@@ -76,7 +76,7 @@ pub(crate) fn frames_take_no_memory_once_warm() {
             .with_size(640, 360)
             .unwrap();
         let draw = |frames: FrameRange| {
-            let curved = Curved::new(&orbit, &Exact);
+            let curved = Curved::new(&orbit, &Exact, None);
             let done = |drawn: DrawnFrame<'_>| drawn.pixels.map(|_| ());
             let sharing = Sharing::fastest(frames.count(), u64::MAX);
             batch::draw(&curved, Form::Grey8, frames.iter(), sharing, |_| true, done).unwrap();
@@ -133,7 +133,7 @@ fn steps_of_an_orbit(form: Form, smooth: bool) {
     let orbit = orbit.with_size(96, 54).unwrap();
     let orbit = orbit.with_antialias(smooth).unwrap();
     let angles = tables::table("standard").lookup();
-    let frames = Curved::new(&orbit, &angles);
+    let frames = Curved::new(&orbit, &angles, None);
     let (mut workspace, mut memory) = (Workspace::default(), FrameMemory::new(form));
     let mut draw = || {
         for number in (1..=240).step_by(48) {

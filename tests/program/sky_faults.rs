@@ -57,8 +57,8 @@ fn is_refused(here: &Path, scene: &str, options: &str, code: i32, words: &[&str]
     }
 }
 
-/// The files of panoramas of 64 × 32 pixels: PNG, JPEG and `OpenEXR`.
-fn pictures(here: &Path) -> [Vec<u8>; 3] {
+/// The files of panoramas of 64 × 32 pixels: PNG, JPEG, `OpenEXR` and Radiance HDR.
+fn pictures(here: &Path) -> [Vec<u8>; 4] {
     let path = here.join("whole");
     let noise = |x: u32, y: u32| {
         let value = x.wrapping_mul(2_654_435_761) ^ y.wrapping_mul(40_503);
@@ -71,23 +71,30 @@ fn pictures(here: &Path) -> [Vec<u8>; 3] {
     });
     write_rgb_file(&path, 64, 32, |x, y| (x as f32, y as f32, 0.5)).unwrap();
     let exr = fs::read(&path).unwrap();
+    let linear = image::DynamicImage::from(picture).to_rgb32f();
+    linear.save_with_format(&path, ImageFormat::Hdr).unwrap();
+    let hdr = fs::read(&path).unwrap();
     fs::remove_file(path).unwrap();
     let [png, jpeg] = encoded;
-    [png, jpeg, exr]
+    [png, jpeg, exr, hdr]
+}
+
+/// A chunk of a PNG file.
+#[expect(clippy::big_endian_bytes, reason = "PNG is big-endian")]
+fn chunk(name: &[u8], content: &[u8]) -> Vec<u8> {
+    let named = [name, content].concat();
+    let mut crc = flate2::Crc::new();
+    crc.update(&named);
+    let (length, sum) = (content.len() as u32, crc.sum());
+    [&length.to_be_bytes(), &named[..], &sum.to_be_bytes()].concat()
 }
 
 /// A PNG file's header that claims so many pixels, and nothing after it.
 #[expect(clippy::big_endian_bytes, reason = "PNG is big-endian")]
 fn claim(width: u32, height: u32) -> Vec<u8> {
-    let mut bytes = b"\x89PNG\r\n\x1A\n\0\0\0\x0D".to_vec();
-    let mut chunk = b"IHDR".to_vec();
-    chunk.extend(width.to_be_bytes());
-    chunk.extend(height.to_be_bytes());
-    chunk.extend([8, 2, 0, 0, 0]);
-    let mut crc = flate2::Crc::new();
-    crc.update(&chunk);
-    bytes.extend(&chunk);
-    bytes.extend(crc.sum().to_be_bytes());
+    let size = [width.to_be_bytes(), height.to_be_bytes()].concat();
+    let header = chunk(b"IHDR", &[&size[..], &[8, 2, 0, 0, 0]].concat());
+    let mut bytes = [b"\x89PNG\r\n\x1A\n", &header[..]].concat();
     // A chunk of pixels begins, and the file ends.
     bytes.extend(b"\0\0\x10\0IDAT");
     bytes
@@ -129,24 +136,79 @@ fn a_panorama_that_is_none_is_refused() {
         fs::write(&path, content).unwrap();
         refused(not_a_picture);
     }
-    let damaged = &["damaged or of an unsupported kind"];
+    let cut = &["the file ends early: copy it again"];
     for picture in pictures(here) {
         for length in [picture.len() / 20, picture.len() / 2, picture.len() - 20] {
             fs::write(&path, &picture[..length]).unwrap();
-            refused(damaged);
+            refused(cut);
         }
     }
+    let too_large =
+        ["2000000000 × 1000000000 pixels, and at most 16384 × 8192 are read: make it smaller"];
     for (width, height, words) in [
-        (30_000, 33_333, &["30000 × 33333 pixels", "2:1"][..]),
+        (
+            30_000,
+            33_333,
+            &["30000 × 33333 pixels", "2:1", "equirectangular"][..],
+        ),
         (60_000, 30_000, &["60000 × 30000 pixels", "16384 × 8192"]),
-        (2_000_000_000, 1_000_000_000, &["Memory limit exceeded"]),
-        (2048, 1024, damaged),
+        (2_000_000_000, 1_000_000_000, &too_large),
+        (
+            4_000_000_000,
+            4_000_000_000,
+            &["4000000000 × 4000000000 pixels", "2:1"],
+        ),
+        (2048, 1024, cut),
     ] {
         fs::write(&path, claim(width, height)).unwrap();
         refused(words);
     }
+    fs::write(
+        &path,
+        "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1000000000 +X 2000000000\n",
+    )
+    .unwrap();
+    refused(&too_large);
+    let [png, _, mut exr, _] = pictures(here);
+    let window = [0, 0, 1_999_999_999, 999_999_999_i32];
+    let window: Vec<u8> = window.into_iter().flat_map(i32::to_le_bytes).collect();
+    let mark = b"displayWindow\0box2i\0\x10\0\0\0";
+    let at = exr.windows(mark.len()).position(|bytes| bytes == mark);
+    exr[at.unwrap() + mark.len()..][..16].copy_from_slice(&window);
+    fs::write(&path, exr).unwrap();
+    refused(&too_large);
+    // Whole, but a byte of its pixels is another one.
+    let mut damaged = png.clone();
+    damaged[png.len() / 2] ^= 1;
+    fs::write(&path, damaged).unwrap();
+    refused(&[
+        "damaged or of an unsupported kind: save it again as PNG, JPEG, Radiance HDR or OpenEXR (",
+    ]);
     RgbImage::new(64, 33).save(&path).unwrap();
     refused(&["64 × 33 pixels", "twice as wide as high"]);
+}
+
+/// A colour profile of a kilobyte or two may claim to hold a gigabyte. It is ignored, and takes no memory.
+#[test]
+fn a_panoramas_colour_profile_takes_no_memory() {
+    let folder = prepared();
+    let here = folder.path();
+    // Zeros in blocks that do not refer to the ones before.
+    let (zeros, mut block) = (vec![0; 1 << 20], Vec::with_capacity(1 << 16));
+    let mut compress = flate2::Compress::new(flate2::Compression::best(), false);
+    let flush = flate2::FlushCompress::Full;
+    compress.compress_vec(&zeros, &mut block, flush).unwrap();
+    let profile = [b"x\0\0\x78\x9C", &block.repeat(1024)[..]].concat();
+    let [png, ..] = pictures(here);
+    let (head, rest) = png.split_at(8 + 25);
+    let bomb = [head, &chunk(b"iCCP", &profile), rest].concat();
+    fs::write(here.join("sky.png"), bomb).unwrap();
+    let output = limited(here, "render p.toml -o a.raw");
+    assert!(output.status.success(), "{output:?}");
+    let bombed = fs::read(here.join("a.raw")).unwrap();
+    fs::write(here.join("sky.png"), png).unwrap();
+    done(here, &["render", "p.toml", "-o", "b.raw"]);
+    assert!(fs::read(here.join("b.raw")).unwrap() == bombed);
 }
 
 #[test]

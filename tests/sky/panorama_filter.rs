@@ -82,8 +82,9 @@ impl Footprint {
     }
 
     fn by_chance(random: &mut Random, place: [f64; 2]) -> Self {
-        let major = random.by_octaves(0.05, 40.0);
-        let lengths = [major, major / random.by_octaves(1.0, 50.0)];
+        let mut by_octaves = |low: f64, high: f64| low * libm::pow(high / low, random.number());
+        let major = by_octaves(0.05, 40.0);
+        let lengths = [major, major / by_octaves(1.0, 50.0)];
         Self::new(place, lengths, [0, 1].map(|_| 7.0 * random.number()))
     }
 

@@ -4,9 +4,7 @@ use std::sync::Arc;
 
 use super::super::method::Method;
 use crate::isoradial::{EscapeCurve, Isoradials, RadiusMap};
-use crate::orbit::Orbits;
 use crate::orbit::exact::Exact;
-use crate::orbit::path::SweptAngles;
 pub(super) use crate::render::batch::DrawnFrame;
 use crate::render::batch::{self, Curved, Frames, RayByRay, Sharing};
 use crate::render::needs::Needs;
@@ -33,10 +31,10 @@ impl FrameSource<'_> {
     ) -> T {
         let draw = |frames: &dyn Frames| body(&FrameSource { frames, form });
         match method {
-            Method::Table(table) => draw(&curved(animation, &table.lookup(), sky)),
-            Method::NoTable => draw(&curved(animation, &Exact, sky)),
-            Method::Exact => draw(&ray_by_ray(animation, &Exact, sky, row_done)),
-            Method::Integrate(adaptive) => draw(&ray_by_ray(animation, adaptive, sky, row_done)),
+            Method::Table(table) => draw(&Curved::new(animation, &table.lookup(), sky)),
+            Method::NoTable => draw(&Curved::new(animation, &Exact, sky)),
+            Method::Exact => draw(&RayByRay::new(animation, &Exact, sky, row_done)),
+            Method::Integrate(adaptive) => draw(&RayByRay::new(animation, adaptive, sky, row_done)),
         }
     }
 
@@ -55,33 +53,6 @@ impl FrameSource<'_> {
     ) -> Result<(), E> {
         let sharing = Sharing::fastest(count, at_a_time);
         batch::draw(self.frames, self.form, numbers, sharing, wanted, done)
-    }
-}
-
-/// Frames from curves, with the sky where it has been read.
-fn curved<'a, A: SweptAngles>(
-    animation: &'a Animation,
-    angles: &'a A,
-    sky: Option<Arc<SkySource>>,
-) -> Curved<'a, A> {
-    let frames = Curved::new(animation, angles);
-    match sky {
-        Some(sky) => frames.with_sky(sky),
-        None => frames,
-    }
-}
-
-/// Frames whose pixels' rays are followed one by one, with the sky where it has been read.
-fn ray_by_ray<'a, O: Orbits>(
-    animation: &'a Animation,
-    orbits: &'a O,
-    sky: Option<Arc<SkySource>>,
-    row_done: &'a (dyn Fn() + Sync),
-) -> RayByRay<'a, O> {
-    let frames = RayByRay::new(animation, orbits, row_done);
-    match sky {
-        Some(sky) => frames.with_sky(sky),
-        None => frames,
     }
 }
 

@@ -43,13 +43,13 @@ pub(super) fn run(
     let method = options::method(args, checked, report)?;
     let table = args.method.table_path(needed);
     let curves = draw::curves(&needs, &method);
-    let shows_disk = form.needs_map() && scene.disk().is_some();
+    let shows_disk = form.needs_map(&scene) && scene.disk().is_some();
     let map = shows_disk.then(|| draw::map(&curves, &method));
     let drawn = (&curves, map.as_ref(), form);
     let mut text = text(&scene, &needs, drawn, &method, table.as_deref());
     if form.needs_escape(&scene) {
         let curve = draw::escape_curve(&View::new(&scene), &method);
-        text.push_str(&escape_line(&curve));
+        text.push_str(&escape_line(&curve, &method));
     }
     if let Some(sky) = scene.sky().filter(|_| form.shows_light()) {
         let frame = memory::of_frame(scene.image(), form);
@@ -61,7 +61,7 @@ pub(super) fn run(
     Ok(())
 }
 
-/// The lines of the explanation.
+/// The lines of the picture, of the table and of the disk's curves.
 fn text(
     scene: &Scene,
     needs: &Needs,
@@ -71,17 +71,22 @@ fn text(
 ) -> String {
     let mut text = String::new();
     let mut line = |label: &str, line: String| push_line(&mut text, label, &line);
+    let has_disk = scene.disk().is_some();
     let ImageSize { width, height } = scene.image();
-    let tolerance = scene.tolerance();
-    line(
-        "picture",
-        format!("{width} × {height}, edges to be right to {tolerance:?} pixels"),
-    );
-    let sensitivity = figure(needs.sensitivity);
-    line(
-        "edges",
-        format!("move by at most {sensitivity} pixels for each radian of error in an angle"),
-    );
+    let picture = format!("{width} × {height}");
+    if has_disk {
+        let (tolerance, sensitivity) = (scene.tolerance(), figure(needs.sensitivity));
+        line(
+            "picture",
+            format!("{picture}, edges to be right to {tolerance:?} pixels"),
+        );
+        line(
+            "edges",
+            format!("move by at most {sensitivity} pixels for each radian of error in an angle"),
+        );
+    } else {
+        line("picture", picture);
+    }
 
     let mut bytes_read = 0;
     if let (Method::Table(table), Some(path)) = (method, path) {
@@ -96,9 +101,18 @@ fn text(
         );
     }
     for candidate in &needs.tables {
-        line("", judgement(candidate, needs));
+        line("", judgement(candidate, needs, has_disk));
     }
 
+    let pixels = u64::from(width) * u64::from(height) * form.bytes() as u64;
+    if !has_disk {
+        line("orders", "none: the scene has no disk".into());
+        line(
+            "bytes",
+            format!("{bytes_read} of the table, {pixels} of pixels"),
+        );
+        return text;
+    }
     let mut label = "orders";
     for order in curves.orders() {
         let (number, nodes) = (order.number(), order.nodes());
@@ -110,12 +124,7 @@ fn text(
         label = "";
     }
     if curves.orders().is_empty() {
-        let why = if scene.disk().is_some() {
-            "none: the disk is not in the picture"
-        } else {
-            "none: the scene has no disk"
-        };
-        line(label, why.into());
+        line(label, "none: the disk is not in the picture".into());
     }
     if let Some(thin) = curves.left_out() {
         let thickness = figure(thin.thickness);
@@ -127,9 +136,7 @@ fn text(
             ),
         );
     }
-
     let (bytes, nodes) = (curves.bytes(), curves.nodes());
-    let pixels = u64::from(width) * u64::from(height) * form.bytes() as u64;
     line(
         "bytes",
         format!(
@@ -166,11 +173,18 @@ fn push_line(text: &mut String, label: &str, line: &str) {
     let _ = writeln!(text, "{label:<12}{line}");
 }
 
-/// The line of the escape curve.
-fn escape_line(curve: &EscapeCurve) -> String {
+/// The line of the escape curve. A ray's direction is as far off as the angle that it sweeps.
+fn escape_line(curve: &EscapeCurve, method: &Method) -> String {
     let (octaves, nodes, bytes) = (curve.octaves(), curve.nodes(), curve.bytes());
+    let angles = match method {
+        Method::Table(table) => table.metadata().measured_error,
+        _ => 0.0,
+    };
+    let error = angles + EscapeCurve::INTERPOLATION_ERROR;
     let mut text = String::new();
-    let line = format!("{octaves} octaves towards the critical ray: {nodes} nodes, {bytes} bytes");
+    let line = format!(
+        "{octaves} octaves towards the critical ray: {nodes} nodes, {bytes} bytes, directions right to {error:.1e} rad"
+    );
     push_line(&mut text, "escape", &line);
     text
 }
@@ -215,12 +229,10 @@ fn sky_lines(sky: &Sky, source: &SkySource) -> String {
 /// What the picture does without.
 fn not_needed(scene: &Scene, form: Form) -> String {
     let mut without = vec!["a ray for each pixel"];
-    match (scene.disk().is_some(), form.needs_map()) {
-        (false, _) => without.push("no map of the radius, since there is no disk"),
-        (true, false) => {
-            without.push("no map of the radius, since the picture shows only where the disk is");
-        }
-        (true, true) => {}
+    if scene.disk().is_none() {
+        without.push("no map of the radius, since there is no disk");
+    } else if !form.needs_map(scene) {
+        without.push("no map of the radius, since the picture shows only where the disk is");
     }
     match (scene.sky().is_some(), form.shows_light()) {
         (false, _) => without.push("no panorama, stars or grid, since there is no sky"),
@@ -236,22 +248,22 @@ fn not_needed(scene: &Scene, form: Form) -> String {
     without.join("; ")
 }
 
-/// How far a table moves the edges, and whether that is good enough.
-fn judgement(candidate: &Candidate, needs: &Needs) -> String {
+/// Tells a table's error, and whether it is good enough. With a disk it is told as a displacement of edges.
+fn judgement(candidate: &Candidate, needs: &Needs, has_disk: bool) -> String {
     let chosen = needs.table().map(|table| table.name) == Some(candidate.name);
+    let moves_edges = candidate.displacement > 0.5 * needs.curve_spec.tolerance;
     let verdict = match (candidate.is_enough, chosen) {
-        (false, _) if candidate.displacement <= 0.5 * needs.curve_spec.tolerance => {
-            "enough for edges, not for light and data"
-        }
+        (false, _) if has_disk && !moves_edges => "enough for edges, not for light and data",
         (false, _) => "not enough",
         (true, true) => "enough",
         (true, false) => "more than enough",
     };
-    format!(
-        "{}: up to {} pixels, {verdict}",
-        candidate.name,
-        figure(candidate.displacement)
-    )
+    let error = if has_disk {
+        format!("up to {} pixels", figure(candidate.displacement))
+    } else {
+        format!("up to {:.1e} rad", candidate.error)
+    };
+    format!("{}: {error}, {verdict}", candidate.name)
 }
 
 /// A number with two significant digits.

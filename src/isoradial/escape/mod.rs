@@ -33,7 +33,8 @@ use crate::orbit::invariants::Orbit;
 use crate::orbit::path::SweptAngles;
 use crate::orbit::{OrbitError, Orbits, Ray};
 
-/// Coefficients of an octave's polynomial. Chebyshev's fall by 5.8 each, so that what is left out is below 1e-10.
+/// Coefficients of an octave's polynomial. Chebyshev's fall by 5.8 each, so that what is left out is below
+/// [`EscapeCurve::INTERPOLATION_ERROR`].
 const COEFFICIENTS: usize = 13;
 
 /// The octaves of x down to a distance from the critical ray of 2⁻⁴⁶ of the smallest angle that matters.
@@ -69,6 +70,9 @@ pub struct Escape {
 }
 
 impl EscapeCurve {
+    /// How far an angle may be off between nodes, in radians, on top of the error of the method's angles.
+    pub const INTERPOLATION_ERROR: f64 = 1e-10;
+
     /// Computes the curve of a camera at inverse radius `u0` from a method's swept angles. `slope_scale` is
     /// `u0 √(1 − u0)`.
     pub fn new(u0: f64, slope_scale: f64, angles: &impl SweptAngles) -> Self {
@@ -193,7 +197,7 @@ impl EscapeCurve {
 
     /// Returns how the ray with inward part `z` and transverse length `s` escapes; `None` where it is captured.
     ///
-    /// The angle is as right as the method's angles, and 1e-10 radians.
+    /// The angle is off by at most the error of the method's angles and [`Self::INTERPOLATION_ERROR`].
     #[inline]
     pub fn at(&self, z: f64, s: f64) -> Option<Escape> {
         let half = self.half_tangent(z, s);

@@ -46,7 +46,7 @@ fn the_curve_is_the_methods_angles() {
         }
         println!("r = {radius}: {worst:e} of {count}");
         assert!(
-            count > 500 && worst < 1e-10,
+            count > 500 && worst < EscapeCurve::INTERPOLATION_ERROR,
             "r = {radius}: {worst:e} of {count}"
         );
     }

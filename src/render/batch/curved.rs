@@ -28,23 +28,14 @@ pub struct Curved<'a, A> {
 }
 
 impl<'a, A: SweptAngles> Curved<'a, A> {
-    /// Creates the frames of `animation`.
-    pub fn new(animation: &'a Animation, angles: &'a A) -> Self {
+    /// Creates the frames of `animation`. Where no sky is given, its files are read when a frame first shows it.
+    pub fn new(animation: &'a Animation, angles: &'a A, sky: Option<Arc<SkySource>>) -> Self {
         Self {
             animation,
             angles,
             block: Mutex::new(None),
             colours: SharedColours::default(),
-            sky: SharedSky::default(),
-        }
-    }
-
-    /// The same frames, with a sky that has been read.
-    #[must_use]
-    pub fn with_sky(self, source: Arc<SkySource>) -> Self {
-        Self {
-            sky: SharedSky::of(source),
-            ..self
+            sky: SharedSky::new(sky),
         }
     }
 
@@ -77,13 +68,18 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
         let block = self.block(number);
         let source = self.sky.source(&scene, form)?;
         let (own, own_map, own_sky);
-        let sky = || SkyAtRadius::new(&scene, &view, source, self.angles);
+        let threads = if on_all_threads {
+            Threads::All
+        } else {
+            Threads::This
+        };
+        let sky = || SkyAtRadius::new(&scene, &view, source, self.angles, threads);
         let (curves, map, sky) = match block.span(number) {
             Some(span) if span.is_shared() => {
                 let draw = || Isoradials::new(&span.spec, self.angles);
                 let curves = span.curves.get_or_init(draw);
                 let map = || RadiusMap::new(curves, self.angles);
-                let map = form.needs_map().then(|| span.map.get_or_init(map));
+                let map = form.needs_map(&scene).then(|| span.map.get_or_init(map));
                 let needs_escape = form.needs_escape(&scene);
                 (curves, map, needs_escape.then(|| span.sky.get_or_init(sky)))
             }
@@ -91,7 +87,7 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
                 let spec = CurveSpec::new(&scene, &view, scene.tolerance());
                 own = Isoradials::new(&spec, self.angles);
                 let map = || RadiusMap::new(&own, self.angles);
-                own_map = form.needs_map().then(map);
+                own_map = form.needs_map(&scene).then(map);
                 own_sky = form.needs_escape(&scene).then(sky);
                 (&own, own_map.as_ref(), own_sky.as_ref())
             }
@@ -104,11 +100,7 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
             sky: sky.map(|sky| FrameSky::at_radius(sky, &scene, &view, source, form)),
             colours: self.colours.of(&scene, form),
             angles: self.angles,
-            threads: if on_all_threads {
-                Threads::All
-            } else {
-                Threads::This
-            },
+            threads,
         };
         let time = start.elapsed();
         let report = frame.draw(workspace, target)?;

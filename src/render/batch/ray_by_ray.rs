@@ -23,23 +23,20 @@ pub struct RayByRay<'a, O> {
 }
 
 impl<'a, O: Orbits> RayByRay<'a, O> {
-    /// Creates the frames of `animation`. `row_done` is called after each row of each frame.
-    pub fn new(animation: &'a Animation, orbits: &'a O, row_done: &'a (dyn Fn() + Sync)) -> Self {
+    /// Creates the frames of `animation`, with its sky as in [`Curved::new`](super::Curved::new). `row_done` is called
+    /// after each row of each frame.
+    pub fn new(
+        animation: &'a Animation,
+        orbits: &'a O,
+        sky: Option<Arc<SkySource>>,
+        row_done: &'a (dyn Fn() + Sync),
+    ) -> Self {
         Self {
             animation,
             orbits,
             row_done,
             colours: SharedColours::default(),
-            sky: SharedSky::default(),
-        }
-    }
-
-    /// The same frames, with a sky that has been read.
-    #[must_use]
-    pub fn with_sky(self, source: Arc<SkySource>) -> Self {
-        Self {
-            sky: SharedSky::of(source),
-            ..self
+            sky: SharedSky::new(sky),
         }
     }
 }

@@ -2,14 +2,17 @@
 
 use std::sync::{Arc, OnceLock};
 
+use rayon::prelude::*;
+
 use super::FrameSky;
 use crate::isoradial::EscapeCurve;
 use crate::orbit::path::SweptAngles;
 use crate::orbit::{OrbitError, Orbits};
 use crate::render::RenderError;
+use crate::render::frame::Threads;
 use crate::render::planes::Form;
 use crate::scene::{Scene, View};
-use crate::sky::{DEFAULT_MEMORY, SkySource, StarColours};
+use crate::sky::{DEFAULT_MEMORY, SkySource, Star, StarColours};
 
 /// The escape curve of a camera radius, and the light of stars there.
 #[derive(Debug)]
@@ -20,20 +23,22 @@ pub(in crate::render) struct SkyAtRadius {
 }
 
 impl SkyAtRadius {
-    /// Computes them from swept angles.
+    /// Computes them from swept angles. The curve takes a few tenths of a millisecond on this thread; the light of many
+    /// stars takes longer, and `threads` share it.
     pub(in crate::render) fn new(
         scene: &Scene,
         view: &View,
         source: Option<&SkySource>,
         angles: &impl SweptAngles,
+        threads: Threads,
     ) -> Self {
         Self {
             curve: EscapeCurve::new(view.u0(), view.slope_scale(), angles),
-            lights: star_lights(scene, view, source),
+            lights: star_lights(scene, view, source, threads),
         }
     }
 
-    /// Computes them by following rays.
+    /// Computes them by following rays, on all threads of the current rayon pool.
     ///
     /// # Errors
     /// The method's error for a ray that it cannot follow.
@@ -45,13 +50,18 @@ impl SkyAtRadius {
     ) -> Result<Self, OrbitError> {
         Ok(Self {
             curve: EscapeCurve::from_orbits(view.u0(), view.slope_scale(), orbits)?,
-            lights: star_lights(scene, view, source),
+            lights: star_lights(scene, view, source, Threads::All),
         })
     }
 }
 
 /// The light of a sky's stars for a scene's camera.
-fn star_lights(scene: &Scene, view: &View, source: Option<&SkySource>) -> Vec<[f32; 3]> {
+fn star_lights(
+    scene: &Scene,
+    view: &View,
+    source: Option<&SkySource>,
+    threads: Threads,
+) -> Vec<[f32; 3]> {
     let settings = scene.sky().and_then(|sky| sky.stars.as_ref());
     let (Some(settings), Some(field)) = (settings, source.and_then(SkySource::stars)) else {
         return Vec::new();
@@ -62,7 +72,12 @@ fn star_lights(scene: &Scene, view: &View, source: Option<&SkySource>) -> Vec<[f
         1.0
     };
     let colours = StarColours::new(shift, settings.exposure);
-    field.stars.iter().map(|star| colours.light(star)).collect()
+    let light = |star: &Star| colours.light(star);
+    if threads == Threads::All {
+        field.stars.par_iter().map(light).collect()
+    } else {
+        field.stars.iter().map(light).collect()
+    }
 }
 
 /// The sky of an animation, read when a frame first needs it: it is that of all its frames.
@@ -70,9 +85,9 @@ fn star_lights(scene: &Scene, view: &View, source: Option<&SkySource>) -> Vec<[f
 pub(in crate::render) struct SharedSky(OnceLock<Result<Arc<SkySource>, RenderError>>);
 
 impl SharedSky {
-    /// A sky that has been read.
-    pub(in crate::render) fn of(source: Arc<SkySource>) -> Self {
-        Self(OnceLock::from(Ok(source)))
+    /// What has been read, or nothing yet.
+    pub(in crate::render) fn new(read: Option<Arc<SkySource>>) -> Self {
+        Self(read.map_or_else(OnceLock::new, |source| OnceLock::from(Ok(source))))
     }
 
     /// What has been read, if anything has.

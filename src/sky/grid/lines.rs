@@ -33,21 +33,18 @@ impl Lines {
 
     /// Returns the share of the footprint that lies in lines.
     pub(super) fn mean(&self) -> f64 {
-        /// Narrower footprints would lose digits: G is known to 1e-18 or so, and it is divided by the two widths.
-        const NARROWEST: f64 = 1e-5;
+        /// Thinner footprints would lose digits: G is known to 1e-18 or so, and it is divided by the two widths. The
+        /// larger one is a line's width at least, where a footprint meets several edges.
         const THINNEST: f64 = 1e-3;
         let [first, second] = self.along.map(f64::abs);
-        let a = first.max(second).max(NARROWEST);
-        let b = first.min(second).max(THINNEST * a);
-        let (x, far, near) = (self.place, 0.5 * (a + b), 0.5 * (a - b));
+        let (a, b) = (first.max(second), first.min(second));
+        let (x, far) = (self.place, 0.5 * (a + b));
         let r = self.half_width;
-        // Most footprints are all in a line, or all beside it.
-        if x.abs() + far <= r {
-            return 1.0;
+        if x.abs() - far >= -r && x.abs() + far <= 1.0 - r {
+            return beside_edge(r - x.abs(), (a, b));
         }
-        if x.abs() - far >= r && x.abs() + far <= 1.0 - r {
-            return 0.0;
-        }
+        let b = b.max(THINNEST * a);
+        let (far, near) = (0.5 * (a + b), 0.5 * (a - b));
         let g = |x: f64| {
             let y = from_nearest_integer(x).abs();
             let inside = (r - y).max(0.0);
@@ -79,6 +76,22 @@ impl Lines {
             .max(mean + other_mean - 1.0)
             .min(mean.min(other_mean))
     }
+}
+
+/// Returns the share of a footprint that lies on the inner side of one edge, its centre `inside` of it. `a` and `b` are
+/// the widths of the two uniform variables, the larger one first.
+#[inline(always)]
+fn beside_edge(inside: f64, (a, b): (f64, f64)) -> f64 {
+    let (far, near) = (0.5 * (a + b), 0.5 * (a - b));
+    if inside.abs() >= far {
+        return if inside >= 0.0 { 1.0 } else { 0.0 };
+    }
+    if inside.abs() <= near {
+        return 0.5 + inside / a;
+    }
+    let corner = far - inside.abs();
+    let beyond = 0.5 * corner * corner / (a * b);
+    if inside >= 0.0 { 1.0 - beyond } else { beyond }
 }
 
 /// Returns the signed distance from the nearest integer, for numbers up to 2⁵¹.

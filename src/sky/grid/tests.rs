@@ -119,6 +119,34 @@ fn agrees_with_supersampling() {
     }
 }
 
+/// Across a line's edge the mean of small footprints is the share on its inner side: of a square along the edge it
+/// rises evenly, and of one across its diagonal as a parabola does.
+#[test]
+fn edges_are_sharp_in_the_smallest_footprints() {
+    let lines = |inside: f64, along| Lines::new(0.01 - inside, along, 0.01, 12.0).mean();
+    for size in [1e-3, 1e-6, 1e-9, 1e-12] {
+        for i in -6..=6 {
+            let share = f64::from(i) / 8.0;
+            let inside = share * size;
+            // Places are known to a few units in the last digit of the half width.
+            let tolerance = 1e-9_f64.max(1e-16 / size);
+            let even = (0.5 + share).clamp(0.0, 1.0);
+            let straight = [[size, 0.0], [0.0, -size]].map(|along| lines(inside, along));
+            let corner = 0.5 * (1.0 - share.abs()) * (1.0 - share.abs());
+            let parabola = if share > 0.0 { 1.0 - corner } else { corner };
+            let oblique = [[size, size], [-size, size]].map(|along| lines(inside, along));
+            for (found, expected) in straight
+                .map(|found| (found, even))
+                .into_iter()
+                .chain(oblique.map(|found| (found, parabola)))
+            {
+                let off = (found - expected).abs();
+                assert!(off <= tolerance, "{size} {share}: {found} {expected}");
+            }
+        }
+    }
+}
+
 #[test]
 fn wide_footprints_show_the_share_of_the_lines() {
     for step in [1.0, 5.0, 15.0, 60.0, 90.0] {

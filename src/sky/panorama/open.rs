@@ -1,14 +1,19 @@
 //! Reads a panorama's file: from its header to linear light.
 
+mod header;
+
+use std::cell::Cell;
 use std::error::Error;
 use std::fs::{self, File};
-use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
+use std::io::{self, BufRead, BufReader, Read, Seek};
 use std::path::Path;
 
 use exr::block::reader::Reader as ExrReader;
 use exr::prelude::{ReadChannels, ReadLayers, Vec2};
 use image::{ImageDecoder, ImageFormat, ImageReader, Limits};
 use rayon::prelude::*;
+
+use header::{HEAD, Watched, check_hdr_header, check_jpeg_end, claimed_size};
 
 use super::Panorama;
 use super::mip_level::MipLevel;
@@ -20,8 +25,9 @@ use crate::sky::{PanoramaProblem, SkyError};
 pub(super) const MOST_ROWS: usize = 8192;
 /// The most light that a texel holds; sums of four stay far within the range of f32.
 const MOST_LIGHT: f64 = 1e30;
-/// The most bytes of a Radiance file's header.
-const MOST_HDR_HEADER: u64 = 1 << 16;
+/// The most bytes that a PNG decoder takes beside the pixels, for rows and chunks. It inflates colour profiles, though
+/// none is used: one that is larger is left out.
+const MOST_ASIDE: u64 = 64 << 20;
 
 impl Panorama {
     /// Reads a longitude–latitude picture, all of its light times 2^`exposure_stops`, with at most `max_bytes` of
@@ -65,29 +71,64 @@ fn read(path: &Path, scale: f64, max_bytes: u64) -> Result<MipLevel, PanoramaPro
     if !metadata.is_file() {
         return Err(PanoramaProblem::NotAFile);
     }
-    let mut reader = ImageReader::new(BufReader::new(File::open(path)?)).with_guessed_format()?;
-    let format = reader.format();
+    let has_ended = Cell::new(false);
+    let mut file = BufReader::new(Watched {
+        file: File::open(path)?,
+        has_ended: &has_ended,
+    });
+    let mut head = Vec::new();
+    file.by_ref().take(HEAD).read_to_end(&mut head)?;
+    file.rewind()?;
+    has_ended.set(false);
+    let format = image::guess_format(&head).map_err(|_| PanoramaProblem::UnknownFormat)?;
+    // A size that is too large is told before a decoder stumbles over it.
+    let claimed = claimed_size(format, &head);
+    let claimed = claimed.map(|(width, height)| checked_height(width, height));
+    let least = claimed.transpose()?.map_or(0, Panorama::bytes_of);
+    // The decoder holds all of a JPEG file, and all lines of a Radiance file's header.
     match format {
-        Some(ImageFormat::OpenExr) => return read_exr(reader.into_inner(), scale, max_bytes),
-        // The decoder holds all of a JPEG file, and all lines of a Radiance file's header.
-        Some(ImageFormat::Jpeg) => {
-            check_memory(metadata.len(), max_bytes)?;
-            check_jpeg_end(path)?;
-        }
-        Some(ImageFormat::Hdr) => {
-            let mut file = reader.into_inner();
-            check_hdr_header(&mut file)?;
-            reader = ImageReader::with_format(file, ImageFormat::Hdr);
-        }
-        Some(ImageFormat::Png) => {}
+        ImageFormat::Png | ImageFormat::OpenExr => {}
+        ImageFormat::Jpeg => check_memory(metadata.len(), max_bytes)?,
+        ImageFormat::Hdr => check_hdr_header(&head)?,
         _ => return Err(PanoramaProblem::UnknownFormat),
     }
+    let level = if format == ImageFormat::OpenExr {
+        read_exr(file, scale, max_bytes)
+    } else {
+        decode(path, format, file, scale, max_bytes)
+    };
+    level.map_err(|problem| match problem {
+        // A decoder that runs out of memory has asked for less than the picture takes.
+        PanoramaProblem::Undecodable(_) if least > max_bytes => PanoramaProblem::Memory {
+            needed: least,
+            allowed: max_bytes,
+        },
+        PanoramaProblem::Undecodable(_) if format == ImageFormat::Jpeg => {
+            check_jpeg_end(path).err().unwrap_or(problem)
+        }
+        PanoramaProblem::Undecodable(_) if has_ended.get() => PanoramaProblem::Truncated,
+        problem => problem,
+    })
+}
+
+/// Decodes a PNG, JPEG or Radiance file.
+fn decode(
+    path: &Path,
+    format: ImageFormat,
+    file: impl BufRead + Seek,
+    scale: f64,
+    max_bytes: u64,
+) -> Result<MipLevel, PanoramaProblem> {
+    let mut reader = ImageReader::with_format(file, format);
     let mut limits = Limits::no_limits();
-    limits.max_alloc = Some(max_bytes);
+    limits.max_alloc = Some(max_bytes.min(MOST_ASIDE));
     reader.limits(limits);
     let decoder = reader.into_decoder().map_err(undecodable)?;
     let (width, height) = decoder.dimensions();
     let height = checked_height(width.into(), height.into())?;
+    if format == ImageFormat::Jpeg {
+        check_jpeg_end(path)?;
+    }
     let length = MipLevel::length(height);
     let (colour, pixel_bytes) = (decoder.color_type(), decoder.total_bytes());
     let channels = usize::from(colour.channel_count());
@@ -95,8 +136,8 @@ fn read(path: &Path, scale: f64, max_bytes: u64) -> Result<MipLevel, PanoramaPro
     let kept = Panorama::bytes_of(height);
     match colour.bytes_per_pixel() / colour.channel_count() {
         1 => {
-            let file = if format == Some(ImageFormat::Jpeg) {
-                metadata.len()
+            let file = if format == ImageFormat::Jpeg {
+                fs::metadata(path)?.len()
             } else {
                 0
             };
@@ -227,31 +268,6 @@ fn read_exr(
     Ok(MipLevel::new(height, image.layer_data.channel_data.pixels))
 }
 
-/// Checks that a JPEG file's last scan ends: the decoder fills with grey what a file that was cut short lacks.
-fn check_jpeg_end(path: &Path) -> Result<(), PanoramaProblem> {
-    // Within a scan no other byte than 0 or a restart marker follows 0xFF.
-    let file = fs::read(path)?;
-    let scan = file.windows(2).rposition(|pair| pair == [0xFF, 0xDA]);
-    let is_whole =
-        scan.is_some_and(|scan| file[scan..].windows(2).any(|pair| pair == [0xFF, 0xD9]));
-    is_whole
-        .then_some(())
-        .ok_or_else(|| undecodable("the file ends early"))
-}
-
-/// Checks that a Radiance file's header ends, by an empty line, before it takes much memory. Leaves the file at its
-/// start.
-fn check_hdr_header(file: &mut (impl Read + Seek)) -> Result<(), PanoramaProblem> {
-    let mut head = Vec::new();
-    file.seek(SeekFrom::Start(0))?;
-    file.by_ref().take(MOST_HDR_HEADER).read_to_end(&mut head)?;
-    file.seek(SeekFrom::Start(0))?;
-    let end = head.windows(2).position(|pair| pair == b"\n\n");
-    let size = end.and_then(|end| head[end + 2..].iter().position(|&byte| byte == b'\n'));
-    size.map(|_| ())
-        .ok_or_else(|| undecodable("its header has no end"))
-}
-
 /// Checks the size in pixels, and returns the height.
 fn checked_height(width: u64, height: u64) -> Result<usize, PanoramaProblem> {
     if width != 2 * height || height == 0 {
@@ -277,5 +293,5 @@ fn check_memory(needed: u64, allowed: u64) -> Result<(), PanoramaProblem> {
 }
 
 fn undecodable(reason: impl Into<Box<dyn Error>>) -> PanoramaProblem {
-    PanoramaProblem::Undecodable(quotation::beginning(&reason.into().to_string(), 200))
+    PanoramaProblem::Undecodable(quotation::beginning(&reason.into().to_string(), 120))
 }

@@ -226,6 +226,18 @@ mod tests {
             Fault::LongLine(1)
         ));
         assert!(matches!(fault("a,".repeat(2000)), Fault::BadHeader { .. }));
+        // Lines that end with a carriage return alone, as old editors wrote them.
+        let old = fault("ra,dec,mag,bv\r1,2,3,1\r4,5,6,1\r");
+        assert!(matches!(old, Fault::BadHeader { line: 1, .. }), "{old}");
+        assert!(old.to_string().contains("carriage return"), "{old}");
+    }
+
+    #[test]
+    fn no_star_is_lost_after_a_carriage_return() {
+        let (field, bad) = read_text("ra,dec,mag,bv\r\n1,2,3,1\r4,5,6,1\n7,8,9,1 \r\n7,8,9,1\r");
+        assert_eq!(field.stars.len(), 2);
+        assert_eq!((bad.count, bad.first[0].line), (1, 2));
+        assert!(bad.first[0].reason.contains("carriage return"));
     }
 
     #[test]

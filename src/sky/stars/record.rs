@@ -78,15 +78,19 @@ impl Record {
     /// Splits a line, which ends with a line feed, into fields.
     ///
     /// # Errors
-    /// A reason if a quotation mark is not closed or the line has more than 1024 fields.
+    /// A reason if a quotation mark is not closed, if the line has more than 1024 fields, or if it has more after a
+    /// carriage return.
     pub(super) fn parse(&mut self, line: &[u8]) -> Result<(), String> {
         self.reader.reset();
-        let (result, _, _, field_count) =
+        let (result, read, _, field_count) =
             self.reader
                 .read_record(line, &mut self.text, &mut self.ends);
         self.field_count = field_count;
         match result {
-            ReadRecordResult::Record => Ok(()),
+            ReadRecordResult::Record if line[read..].trim_ascii().is_empty() => Ok(()),
+            ReadRecordResult::Record => {
+                Err("a carriage return is no end of a line; lines end with a line feed".into())
+            }
             ReadRecordResult::OutputEndsFull => Err(format!("more than {MOST_FIELDS} fields")),
             _ => Err("a quotation mark is not closed".into()),
         }

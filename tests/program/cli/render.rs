@@ -43,8 +43,14 @@ fn the_map_is_told_of_where_the_output_needs_it() {
     let folder = with_draft();
     let here = folder.path();
     let pixels = 96 * 54;
+    // A disk that is white everywhere, before a sky.
+    let white = printed(here, &["scene", "classic"]) + "[sky]\ngrid = 15\n";
+    fs::write(here.join("white.toml"), white).unwrap();
     for (options, bytes, has_map) in [
-        (&["classic"][..], 1, false),
+        (&["white.toml"][..], 3, false),
+        (&["white.toml", "--format", "exr"], 20, false),
+        (&["white.toml", "--layers", "colour,redshift"], 20, true),
+        (&["classic"], 1, false),
         (&["lit"], 3, true),
         (&["lit", "--bits", "16"], 6, true),
         (&["lit", "--layers", "coverage,order"], 8, false),
@@ -60,7 +66,36 @@ fn the_map_is_told_of_where_the_output_needs_it() {
         assert_eq!(told.contains("no map of the radius"), !has_map);
         assert!(!told.contains("colour"), "{told}");
     }
-    assert_eq!(listing(here), ["a.table"]);
+    assert_eq!(listing(here), ["a.table", "white.toml"]);
+}
+
+/// Without a disk `--explain` tells what holds for the sky, and speaks of no edges.
+#[test]
+fn without_a_disk_no_edges_are_explained() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    let explain = ["render", "--explain", "--size", SMALL, "grid"];
+    let told = |options: &[&str]| printed(here, &[&explain[..], options].concat());
+    let sky = told(&[]);
+    for words in [
+        "picture     96 × 54\n",
+        "draft: up to 1.0e-6 rad, not enough\n",
+        "standard: up to 1.0e-9 rad, enough\n",
+        "fine: up to 1.0e-12 rad, more than enough\n",
+        "\norders      none: the scene has no disk\n",
+        " of the table, 15552 of pixels\n",
+        " bytes, directions right to ",
+        "\ngrid        a line every ",
+        "no map of the radius, since there is no disk; spin and thickness are",
+    ] {
+        assert!(sky.contains(words), "no {words} in:\n{sky}");
+    }
+    let nothing = told(&["--layers", "coverage"]);
+    assert!(!nothing.contains("\nescape"), "{nothing}");
+    for told in [sky, nothing] {
+        assert!(!told.contains("edge"), "{told}");
+        assert!(!told.contains("curves"), "{told}");
+    }
 }
 
 /// The picture decides the table: the draft table for a small picture, none if even the fine table is too coarse.
@@ -102,13 +137,6 @@ fn a_picture_takes_the_smallest_table_that_is_good_enough() {
         ] {
             assert!(explained.contains(words), "no {words} in:\n{explained}");
         }
-    }
-    let explained = printed(here, &["render", "--explain", "--size", SMALL, "grid"]);
-    for words in [
-        "none: the scene has no disk",
-        "since there is no disk; spin and thickness are",
-    ] {
-        assert!(explained.contains(words), "no {words} in:\n{explained}");
     }
     let finest = ["render", "--size", SMALL, "--tolerance", "1e-10"];
     let (_, stderr) = done(here, &finest);

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-/// A generator of numbers: splitmix64.
+/// A generator of numbers: `SplitMix64`.
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
@@ -13,11 +13,6 @@ impl Random {
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// Returns a number in [low, high), as likely in each octave.
-    pub(crate) fn by_octaves(&mut self, low: f64, high: f64) -> f64 {
-        low * libm::pow(high / low, self.number())
     }
 }
 
