@@ -87,10 +87,10 @@ impl Grid {
     /// `along_y` are its changes to the next pixel in the picture's row and column. Where v is beyond 0 or 1 the place
     /// lies beyond the pole.
     #[inline]
-    pub fn mean(&self, place: [f32; 2], along_x: [f32; 2], along_y: [f32; 2]) -> [f32; 4] {
+    pub fn mean(&self, place: [f64; 2], along_x: [f32; 2], along_y: [f32; 2]) -> [f32; 4] {
         #[expect(clippy::manual_clamp, reason = "what is not a number becomes a bound")]
         let bounded = |along: f32| f64::from(along.max(-WIDEST).min(WIDEST));
-        let (mut u, mut v) = (f64::from(place[0]), f64::from(place[1]));
+        let [mut u, mut v] = place;
         let along_u = [bounded(along_x[0]), bounded(along_y[0])];
         let mut along_v = [bounded(along_x[1]), bounded(along_y[1])];
         if !(0.0..=1.0).contains(&v) {

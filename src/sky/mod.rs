@@ -11,6 +11,6 @@ pub use error::{PanoramaProblem, SkyError};
 pub use grid::Grid;
 pub use orientation::{Orientation, direction, place};
 pub use panorama::Panorama;
-pub(crate) use panorama::lattice;
+pub(crate) use panorama::{lattice, simd};
 pub use source::{DEFAULT_MEMORY, SkySource};
 pub use stars::{BadRows, Star, StarColours, StarField};

@@ -36,10 +36,10 @@ impl<'a> Backdrop<'a> {
     }
 
     /// Returns the mean light over a parallelogram about a place.
-    pub(super) fn mean(&self, place: [f32; 2], along_x: [f32; 2], along_y: [f32; 2]) -> [f32; 3] {
-        let light = self
-            .panorama
-            .map_or([0.0; 3], |panorama| panorama.mean(place, along_x, along_y));
+    pub(super) fn mean(&self, place: [f64; 2], along_x: [f32; 2], along_y: [f32; 2]) -> [f32; 3] {
+        let light = self.panorama.map_or([0.0; 3], |panorama| {
+            panorama.mean(place.map(|c| c as f32), along_x, along_y)
+        });
         self.with_grid(light, place, along_x, along_y)
     }
 
@@ -63,7 +63,7 @@ impl<'a> Backdrop<'a> {
     fn with_grid(
         &self,
         light: [f32; 3],
-        place: [f32; 2],
+        place: [f64; 2],
         along_x: [f32; 2],
         along_y: [f32; 2],
     ) -> [f32; 3] {
@@ -107,7 +107,7 @@ impl Filler<'_> {
         }
         for (i, mean) in means[..self.columns].iter_mut().enumerate() {
             let [along_x, along_y] = places.sides(i, [1.0; 2]);
-            let place = [0, 1].map(|q| (self.origin[q] + f64::from(places.centres[q][i])) as f32);
+            let place = [0, 1].map(|q| self.origin[q] + f64::from(places.centres[q][i]));
             let [red, green, blue, _] = *mean;
             let light = self
                 .backdrop

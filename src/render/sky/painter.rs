@@ -9,8 +9,9 @@ use super::shader::{SkyShader, outward, place_change};
 use crate::render::patch::{Misfit, Patch, PatchFit};
 use crate::render::shadow;
 use crate::render::tiles::{Rectangle, Run, TILE, Tiled, paint_runs};
-use crate::sky::lattice::{COLUMNS, LANES, PixelRow, PlaceRow, level};
+use crate::sky::lattice::{COLUMNS, LANES, PixelRow, PlaceRow};
 use crate::sky::place;
+use crate::sky::simd::level;
 
 /// Nodes a side of a patch.
 const NODES: usize = 7;
@@ -78,7 +79,7 @@ impl<'a> SkyPainter<'a> {
             let around = footprint.along_y * across - footprint.along_x * down;
             let (u, v) = place(sight.direction);
             Some(self.backdrop.mean(
-                [u as f32, v as f32],
+                [u, v],
                 place_change(sight.direction, out / parts_out as f64),
                 place_change(sight.direction, around / parts_around as f64),
             ))

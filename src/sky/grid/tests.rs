@@ -57,8 +57,8 @@ fn supersampled(
 }
 
 fn mean(grid: &Grid, footprint: [[f64; 2]; 3]) -> [f64; 4] {
-    let [place, x, y] = footprint.map(|vector| vector.map(|value| value as f32));
-    grid.mean(place, x, y).map(f64::from)
+    let [x, y] = [1, 2].map(|side| footprint[side].map(|value| value as f32));
+    grid.mean(footprint[0], x, y).map(f64::from)
 }
 
 /// Numbers from 0 to 1 that fill a square evenly.
@@ -195,14 +195,14 @@ fn seams_do_not_show() {
     let close = |a: [f32; 4], b: [f32; 4]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 2e-3);
     for index in 0..20_000 {
         let [s, v] = even(index);
-        let (u, v) = ((s * 0.02 - 0.01) as f32, v as f32);
+        let u = s * 0.02 - 0.01;
         let (x, y) = ([0.002, 0.001], [-0.0005, 0.003]);
         assert!(
             close(grid.mean([u, v], x, y), grid.mean([u + 1.0, v], x, y)),
             "{u} {v}"
         );
         // Over the pole.
-        let above = (1.0 + 0.01 * s) as f32;
+        let above = 1.0 + 0.01 * s;
         let folded = 2.0 - above;
         let over = grid.mean([v, above], x, y);
         let same = grid.mean([v + 0.5, folded], [x[0], -x[1]], [y[0], -y[1]]);

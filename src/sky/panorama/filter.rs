@@ -17,7 +17,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Select, dispatch, f32x4, f32x8, i32x4, mask32x4};
 
 use super::Panorama;
-use super::lattice::level;
+use super::simd::level;
 
 /// Up to this sum of a footprint's two sides' squares, in texels, one tap does: a square of 0.87 texels.
 pub(super) const ONE_TAP: f32 = 1.5;

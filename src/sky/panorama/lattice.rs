@@ -11,20 +11,11 @@
 //! `J Jᵀ/12`; what the [level](super::filter) gives is taken from it. Pixels whose footprints are long, and so would
 //! need more taps, have the filter's means.
 
+use fearless_simd::f32x4;
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, f32x4};
 
 use super::Panorama;
 use super::filter::{Moments, Pair, folded, given_to_taps, scale};
-
-/// The instructions to compute with: AVX2 where there is more, since vectors of eight floats are all that is used.
-#[inline]
-pub(crate) fn level() -> Level {
-    let level = Level::new();
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    let level = level.as_avx2().map_or(level, Level::Avx2);
-    level
-}
 
 /// The most columns of a lattice.
 pub(crate) const COLUMNS: usize = 128;
@@ -34,8 +25,11 @@ pub(crate) const LANES: usize = 4;
 const BLOCK: usize = 32;
 const BLOCKS: usize = COLUMNS / BLOCK;
 
-/// The greatest squared length of a footprint, in texels of its level: corners are then up to 2.4 texels apart.
-const LONGEST: f32 = 12.0;
+/// The greatest squared length of a footprint, in texels of its level: corners are then up to 2.1 texels apart.
+const LONGEST: f32 = 9.0;
+/// A level is taken from this share of the size on at which it has the footprint's own width. It is then up to a fifth
+/// too wide, which changes less than corners that are further apart.
+const EARLIER: f32 = 0.75;
 /// A footprint is nearly a square where the squares of its axes differ by less than this share of their sum, squared.
 const SQUARE: f32 = 0.25;
 
@@ -239,7 +233,7 @@ impl Block {
         let radius = (difference * difference + xy * xy).sqrt();
         let minor = (mean - radius).max(0.0);
         let mut block = Self::default();
-        while block.level + 1 < levels && minor / 3.0 + 1.0 >= 4.0 * block.size2() {
+        while block.level + 1 < levels && minor / 3.0 + 1.0 >= EARLIER * 4.0 * block.size2() {
             block.level += 1;
         }
         let is_square = block.level == 0 || radius * radius <= SQUARE * mean * mean;
@@ -308,4 +302,176 @@ fn four<S: Simd>(simd: S, row: &[f32], at: usize) -> f32x4<S> {
 #[inline(always)]
 fn colour<S: Simd>(simd: S, colour: &[f32; 4]) -> f32x4<S> {
     f32x4::load_array_ref(simd, colour)
+}
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::{Level, dispatch};
+
+    use super::super::simd::level;
+    use super::*;
+
+    /// Rows of a map that turns by `angle` and has pixels of `size` texels, wider by `stretch` in one direction.
+    struct Map {
+        size: f32,
+        stretch: f32,
+        angle: f32,
+    }
+
+    impl Map {
+        fn row(&self, height: f32, (x, y): (f32, f32)) -> PlaceRow {
+            let (sine, cosine) = (libm::sinf(self.angle), libm::cosf(self.angle));
+            let at = |i: usize| {
+                let (x, y) = (self.stretch * self.size * (x + i as f32), self.size * y);
+                [
+                    (cosine * x - sine * y) / (2.0 * height),
+                    (sine * x + cosine * y) / height,
+                ]
+            };
+            [0, 1].map(|q| core::array::from_fn(|i| at(i)[q]))
+        }
+
+        /// Returns the means of some rows of 100 pixels.
+        fn means(&self, level: Level, panorama: &Panorama, rows: usize) -> Vec<ColourRow> {
+            let height = panorama.height() as f32;
+            let rows_of = |y: f32| {
+                [(0.0, y), (0.5, y + 0.5), (0.0, y + 1.0)].map(|place| self.row(height, place))
+            };
+            let [above, centres, below] = rows_of(0.0);
+            let middle = PixelRow {
+                above: &above,
+                centres: &centres,
+                below: &below,
+            };
+            let mut lattice = Lattice::new(panorama, ORIGIN, 100, &middle);
+            let mut found = Vec::new();
+            for row in 0..rows {
+                let [above, centres, below] = rows_of(row as f32);
+                let places = PixelRow {
+                    above: &above,
+                    centres: &centres,
+                    below: &below,
+                };
+                let mut means = [[0.0; 4]; COLUMNS + LANES];
+                dispatch!(level, simd => lattice.row(simd, &places, row > 0, &mut means));
+                found.push(means);
+            }
+            found
+        }
+    }
+
+    const ORIGIN: [f64; 2] = [0.98, 0.4];
+
+    fn textured(height: usize) -> Panorama {
+        let value = |i: usize| ((i * 7919) % 1009) as f32 / 1009.0;
+        Panorama::from_linear(height, (0..6 * height * height).map(value).collect())
+    }
+
+    /// Maps of all kinds: magnified, about a texel, nearly squares of many, and long.
+    fn maps() -> impl Iterator<Item = Map> {
+        let sizes = [0.01, 0.7, 1.1, 1.9, 2.8, 5.0, 17.0];
+        sizes.into_iter().flat_map(|size| {
+            [(1.0, 0.0), (1.2, 0.7), (2.5, 1.9), (9.0, 0.4)].map(|(stretch, angle)| Map {
+                size,
+                stretch,
+                angle,
+            })
+        })
+    }
+
+    #[test]
+    fn all_instructions_give_the_same_bits() {
+        let panorama = textured(256);
+        for map in maps() {
+            let [best, least] =
+                [level(), Level::baseline()].map(|level| map.means(level, &panorama, 3));
+            for (best, least) in best.iter().zip(&least) {
+                for (best, least) in best[..100].iter().zip(&least[..100]) {
+                    assert_eq!(best[..3], least[..3]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn rows_that_go_on_are_those_computed_alone() {
+        let panorama = textured(256);
+        let height = panorama.height() as f32;
+        for map in maps() {
+            let rows = map.means(level(), &panorama, 3);
+            let of = |place| map.row(height, place);
+            let (above, centres, below) = (of((0.0, 2.0)), of((0.5, 2.5)), of((0.0, 3.0)));
+            let places = PixelRow {
+                above: &above,
+                centres: &centres,
+                below: &below,
+            };
+            let [above, centres, below] = [(0.0, 0.0), (0.5, 0.5), (0.0, 1.0)].map(of);
+            let middle = PixelRow {
+                above: &above,
+                centres: &centres,
+                below: &below,
+            };
+            let mut lattice = Lattice::new(&panorama, ORIGIN, 100, &middle);
+            let mut means = [[0.0; 4]; COLUMNS + LANES];
+            dispatch!(level(), simd => lattice.row(simd, &places, false, &mut means));
+            for (alone, last) in means[..100].iter().zip(&rows[2][..100]) {
+                assert_eq!(alone[..3], last[..3]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_uniform_panorama_has_uniform_means() {
+        let panorama = Panorama::from_linear(300, vec![0.3; 6 * 300 * 300]);
+        for map in maps() {
+            for means in map.means(level(), &panorama, 2) {
+                let worst = means[..100].iter().flat_map(|mean| &mean[..3]);
+                assert!(worst.fold(0.0_f32, |worst, c| worst.max((c - 0.3).abs())) < 3e-7);
+            }
+        }
+    }
+
+    /// A pattern whose variation a kernel dampens by what its second moments tell.
+    #[test]
+    fn pixels_have_the_second_moments_of_their_footprints() {
+        let height = 512;
+        // A wave of 60 texels along a row, between ½ and 1½.
+        let value = |i: usize| {
+            let x = ((i / 3) % (2 * height)) as f64 * core::f64::consts::TAU / 64.0;
+            (1.0 + 0.5 * libm::cos(x)) as f32
+        };
+        let panorama = Panorama::from_linear(height, (0..6 * height * height).map(value).collect());
+        for (size, stretch) in [
+            (1.317, 1.0),
+            (1.937, 1.0),
+            (2.871, 1.0),
+            (3.313, 1.0),
+            (5.459, 1.0),
+            (1.937, 1.5),
+        ] {
+            let map = Map {
+                size,
+                stretch,
+                angle: 0.0,
+            };
+            let means = map.means(level(), &panorama, 2);
+            let length = f64::from(size * stretch);
+            let k = core::f64::consts::TAU / 64.0;
+            // A box of this length over bilinear texels, to the second moment.
+            let wanted = 0.5 * (1.0 - k * k * (length * length / 12.0 + 1.0 / 6.0) / 2.0);
+            let (mut sum, mut of_one) = (0.0, 0.0);
+            for (i, mean) in means[1][..100].iter().enumerate() {
+                let x = ORIGIN[0] * 2.0 * height as f64 - 0.5 + length * (i as f64 + 0.5);
+                let wave = libm::cos(k * x);
+                sum += (f64::from(mean[0]) - 1.0) * wave;
+                of_one += wave * wave;
+            }
+            let found = sum / of_one;
+            assert!(
+                (found - wanted).abs() < 1e-4,
+                "{size} {stretch}: {found}, not {wanted}"
+            );
+        }
+    }
 }

@@ -4,6 +4,7 @@ mod filter;
 pub(crate) mod lattice;
 mod mip_level;
 mod open;
+pub(crate) mod simd;
 
 use mip_level::MipLevel;
 
