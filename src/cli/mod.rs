@@ -64,7 +64,7 @@ Exit codes: 0 success, 1 failure, 2 usage error, 130 and 143 stopped by Ctrl-C a
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    Render(render::RenderArgs),
+    Render(Box<render::RenderArgs>),
     Table(table::TableArgs),
     Trace(trace::TraceArgs),
     Scene(scene::SceneArgs),

@@ -27,6 +27,14 @@ pub enum SceneError {
         /// What is allowed, and why.
         reason: String,
     },
+    /// A value that was to take the place of one in a scene's file is not allowed.
+    #[error("{from}: {problem}")]
+    Override {
+        /// Where the value comes from, such as an option of the command line.
+        from: String,
+        /// What is wrong.
+        problem: String,
+    },
     /// Something is wrong in one frame, or in the keyframe at that frame.
     #[error("frame {number}: {error}")]
     InFrame {

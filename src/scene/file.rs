@@ -13,8 +13,11 @@ use super::validate;
 use super::values::{DEFAULT_TOLERANCE, ImageSettings, Light, Tone};
 use crate::quotation::beginning;
 
+mod camera;
 mod sky;
 mod write;
+
+pub(super) use camera::{CameraTable, Fov, Place};
 
 /// The whole file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -26,21 +29,6 @@ pub(super) struct SceneFile {
     pub(super) sky: Option<Arc<Sky>>,
     pub(super) image: ImageTable,
     pub(super) animation: Option<AnimationTable>,
-}
-
-/// `[camera]`.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct CameraTable {
-    /// Left out where the animation sets it.
-    #[serde(default, deserialize_with = "maybe_three_numbers")]
-    pub(super) position: Option<[f64; 3]>,
-    #[serde(default, deserialize_with = "three_numbers")]
-    pub(super) focus: [f64; 3],
-    /// Its default depends on the animation.
-    #[serde(default, deserialize_with = "maybe_three_numbers")]
-    pub(super) up: Option<[f64; 3]>,
-    pub(super) fov: f64,
 }
 
 /// `[disk]`.
@@ -246,8 +234,7 @@ impl SceneFile {
     /// # Errors
     /// [`SceneError::Toml`], with line and column.
     pub(super) fn parse(text: &str) -> Result<Self, SceneError> {
-        toml::from_str(text)
-            .map_err(|error| SceneError::toml(readable(error.to_string().trim_end())))
+        toml::from_str(text).map_err(|error| parser_error(&error))
     }
 
     /// The light of the disk, if there is any.
@@ -275,6 +262,11 @@ impl SceneFile {
             ..settings
         })
     }
+}
+
+/// The error of the parser.
+pub(super) fn parser_error(error: &toml::de::Error) -> SceneError {
+    SceneError::toml(readable(error.to_string().trim_end()))
 }
 
 /// Makes the parser's message readable: it quotes lines of any length, and names types as Rust does.
@@ -305,7 +297,7 @@ mod tests {
     #[test]
     fn what_has_a_default_may_be_left_out() {
         let file = SceneFile::parse(SHORTEST).unwrap();
-        assert_eq!(file.camera.position, Some([20.0, 0.0, 5.0]));
+        assert_eq!(file.camera.position(), Some([20.0, 0.0, 5.0]));
         assert_eq!(file.camera.focus, [0.0; 3]);
         assert_eq!((file.camera.up, file.animation), (None, None));
         assert_eq!(file.disk.unwrap().normal, [0.0, 0.0, 1.0]);
@@ -333,9 +325,9 @@ mod tests {
 
     #[test]
     fn unknown_keys_and_wrong_types_are_refused_with_their_place() {
-        let unknown = message(&SHORTEST.replace("fov = 40", "fov = 40\nroll = 3"));
+        let unknown = message(&SHORTEST.replace("fov = 40", "fov = 40\ntilt = 3"));
         assert!(
-            unknown.contains("`roll`") && unknown.contains("line 4, column 1"),
+            unknown.contains("`tilt`") && unknown.contains("line 4, column 1"),
             "{unknown}"
         );
         let unknown = message(&SHORTEST.replace("[disk]", "[light]\n[disk]"));

@@ -11,7 +11,7 @@ use super::super::progress::ProgressKind;
 use super::super::threads::ThreadArgs;
 use super::format::Format;
 use super::memory;
-use crate::scene::{DEFAULT_SCENE, ImageSize};
+use crate::scene::{DEFAULT_SCENE, ImageSize, Override};
 
 /// Render a scene as a picture or as data, or its animation as numbered files or a film
 ///
@@ -29,6 +29,22 @@ pub(in crate::cli) struct RenderArgs {
     /// A scene's TOML file, or the name of a built-in scene (`darkness scene` lists them)
     #[arg(value_name = "SCENE", default_value = DEFAULT_SCENE)]
     pub(super) scene: PathBuf,
+    /// Give any key of the scene another value, one of TOML: --set camera.fov=12, --set disk.normal=[0,1,1], --set
+    /// animation.keyframe.120.fov=9 (the keyframe at frame 120). An empty value takes the key out
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = Override::parse)]
+    pub(super) set: Vec<Override>,
+    /// The camera's radius, in Schwarzschild radii, or its orbit's. The angles stay [default: the scene's]
+    #[arg(long, value_name = "R", allow_negative_numbers = true)]
+    pub(super) radius: Option<f64>,
+    /// The camera's inclination from +z, or its orbit's: 0 is face-on to a level disk, 90 edge-on [default: the scene's]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    pub(super) inclination: Option<f64>,
+    /// The camera's azimuth from +x, or its orbit's [default: the scene's]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    pub(super) azimuth: Option<f64>,
+    /// The vertical field of view [default: the scene's]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    pub(super) fov: Option<f64>,
     /// The output: a .png, .exr or .npz file, or - for the standard output. For an animation: such a name with #### or
     /// %04d in place of the number, or a film: .y4m, .raw, or by ffmpeg .mp4, .mov, .mkv or .webm [default: the scene's
     /// name with .png, with .exr if it names layers, with _#### for an animation, in the current folder]

@@ -7,7 +7,7 @@ use super::super::progress::Report;
 use super::args::RenderArgs;
 use super::memory;
 use crate::render::Form;
-use crate::scene::{Animation, ImageSize, LayerSet, SceneError};
+use crate::scene::{Animation, ImageSize, Override, SceneError};
 
 /// The scene, with what the options change of it.
 ///
@@ -25,39 +25,51 @@ pub(super) fn animation(args: &RenderArgs) -> anyhow::Result<Animation> {
             return Err(misuse(format!("{flag} needs --method table")));
         }
     }
-    let mut animation = Animation::load(&args.scene)?;
-    if let Some(size) = args.size {
-        memory::check(args.max_memory, size, Form::Grey8)?;
-        let ImageSize { width, height } = size;
-        let sized = animation.with_size(width, height);
-        animation = sized.map_err(|error| misuse(format!("--size {width}x{height}: {error}")))?;
-    }
-    if let Some(antialias) = args.antialias {
-        animation = animation.with_antialias(antialias)?;
-    }
-    if let Some(pixels) = args.tolerance {
-        let right = animation.with_tolerance(pixels);
-        animation = right.map_err(|error| misuse(format!("--tolerance {pixels}: {error}")))?;
-    }
-    if let Some(names) = &args.layers {
-        let layers = LayerSet::from_names(names).and_then(|layers| animation.with_layers(layers));
-        animation = layers.map_err(|error| misuse(format!("--layers: {error}")))?;
-    }
-    if let Some(bits) = args.bits {
-        animation = animation.with_bits(bits)?;
-    }
-    if let Some(stops) = args.exposure {
-        if !animation.shows_colour() {
-            return Err(misuse(
-                "--exposure changes light, and this scene has none; give it a [disk.light] or a [sky], or leave \
-                 --exposure out",
-            ));
-        }
-        let exposed = animation.with_exposure(stops);
-        animation = exposed.map_err(|error| misuse(format!("--exposure {stops}: {error}")))?;
+    let animation = Animation::load_with(&args.scene, &overrides(args));
+    let animation = animation.map_err(|error| match error {
+        SceneError::Override { .. } => misuse(error.to_string()),
+        error => error.into(),
+    })?;
+    if args.exposure.is_some() && !animation.shows_colour() {
+        return Err(misuse(
+            "--exposure changes light, and this scene has none; give it a [disk.light] or a [sky], or leave \
+             --exposure out",
+        ));
     }
     memory::check(args.max_memory, animation.image(), Form::Grey8)?;
     Ok(animation)
+}
+
+/// The values that the options give to keys of the scene.
+fn overrides(args: &RenderArgs) -> Vec<Override> {
+    let mut overrides = args.set.clone();
+    let numbers = [
+        ("radius", "camera.radius", args.radius),
+        ("inclination", "camera.inclination", args.inclination),
+        ("azimuth", "camera.azimuth", args.azimuth),
+        ("fov", "camera.fov", args.fov),
+        ("tolerance", "image.tolerance", args.tolerance),
+        ("exposure", "image.exposure", args.exposure),
+    ];
+    overrides.extend(numbers.into_iter().filter_map(|(flag, key, number)| {
+        let number = number?;
+        Some(Override::new(format!("--{flag} {number}"), key, number))
+    }));
+    if let Some(ImageSize { width, height }) = args.size {
+        for (key, side) in [("image.width", width), ("image.height", height)] {
+            let flag = format!("--size {width}x{height}");
+            overrides.push(Override::new(flag, key, i64::from(side)));
+        }
+    }
+    let antialias = args.antialias.map(|smooth| ("antialias", smooth.into()));
+    let bits = args.bits.map(|bits| ("bits", i64::from(bits).into()));
+    let layers = args.layers.clone().map(|names| ("layers", names.into()));
+    for (flag, value) in antialias.into_iter().chain(bits).chain(layers) {
+        let (flag, key) = (format!("--{flag}"), format!("image.{flag}"));
+        let value: toml::Value = value;
+        overrides.push(Override::new(flag, &key, value));
+    }
+    overrides
 }
 
 /// The frames, all of which the animation has.

@@ -101,6 +101,7 @@ impl Animation {
     /// [`SceneError`] for what is wrong with every frame; in a still scene, for all that is wrong.
     pub(super) fn new(mut file: SceneFile) -> Result<Self, SceneError> {
         let settings = file.settings()?;
+        let has_angles = file.camera.normalise(settings.size)?;
         let table = file.animation.take();
         let (frames, rate) = match &table {
             Some(table) => (frames(table.frames)?, Rate::new(table.fps)?),
@@ -119,7 +120,12 @@ impl Animation {
             interpolation,
         };
         let position = keys.vectors("animation.keyframe.position", |keyframe| keyframe.position)?;
-        let position = match (orbit, position.as_slice(), file.camera.position) {
+        if has_angles && (orbit.is_some() || !position.is_empty()) {
+            return Err(SceneError::toml(
+                "camera.radius, inclination and azimuth mean nothing where the animation moves the camera; remove them",
+            ));
+        }
+        let position = match (orbit, position.as_slice(), file.camera.position()) {
             (Some(_), [_, ..], _) => {
                 return Err(SceneError::toml(
                     "animation.orbit and keyframes both set the camera's position; remove one of them",
@@ -130,8 +136,8 @@ impl Animation {
             (None, [], Some(position)) => Position::still(position)?,
             (None, [], None) => {
                 return Err(SceneError::toml(
-                    "camera.position is missing; only an animation with an orbit or with positions in its keyframes \
-                     can leave it out",
+                    "camera.position is missing; give it, or camera.radius, inclination and azimuth. Only an animation with \
+                     an orbit or with positions in its keyframes can leave it out",
                 ));
             }
         };
@@ -177,7 +183,7 @@ impl Animation {
             position,
             focus: Track::or_still(&focus, focus_of_scene.to_array(), interpolation),
             up,
-            fov: Track::or_still(&fov, [file.camera.fov], interpolation),
+            fov: Track::or_still(&fov, [file.camera.fov.degrees()], interpolation),
             disk,
             settings,
             file: SceneFile {
@@ -238,13 +244,12 @@ impl Animation {
         };
         let disk = self.disk.as_ref().map(|disk| disk.at(time));
         let (light, sky) = (self.file.light(), self.file.sky.clone());
-        Scene::at_radius(camera, radius, disk, light, sky, self.settings).map_err(|error| {
-            if self.is_still() {
-                error
-            } else {
-                error.in_frame(number)
-            }
-        })
+        let scene = Scene::at_radius(camera, radius, disk, light, sky, self.settings);
+        match scene {
+            Ok(scene) => Ok(scene.rolled(self.file.camera.roll)),
+            Err(error) if self.is_still() => Err(error),
+            Err(error) => Err(error.in_frame(number)),
+        }
     }
 
     /// Checks frame `number`, and that the camera does not pass through the disk on its way to the next frame.

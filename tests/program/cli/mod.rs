@@ -1,6 +1,7 @@
 //! Guards against a command line that writes where it should not, goes on after an error, panics, or gives other
 //! answers than the library.
 
+mod camera;
 mod render;
 mod scene;
 mod table;
