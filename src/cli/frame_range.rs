@@ -133,6 +133,20 @@ impl FrameRange {
         }
     }
 
+    /// Returns the part of the range up to the number `end`; [`None`] where all of it is above.
+    #[must_use]
+    pub fn up_to_frame(&self, end: u32) -> Option<Self> {
+        let parts = self.steps.iter().filter(|steps| steps.first <= end);
+        let cut = |&Steps { first, last, step }: &Steps| {
+            let last = last.min(end);
+            let last = last - (last - first) % step;
+            let step = if first == last { 1 } else { step };
+            Steps { first, last, step }
+        };
+        let steps: Vec<Steps> = parts.map(cut).collect();
+        (!steps.is_empty()).then_some(Self { steps })
+    }
+
     /// The numbers in rising order.
     pub fn iter(&self) -> impl Iterator<Item = u32> + Send + '_ {
         core::iter::successors(self.above(0), |&number| self.above(number))
@@ -204,6 +218,22 @@ mod tests {
         assert_eq!(numbers("8-9,1-3,2-4,3"), [1, 2, 3, 4, 8, 9]);
         assert_eq!(numbers("1-9x2,1-9x3"), [1, 3, 4, 5, 7, 9]);
         assert!(!"1-9x2".parse::<FrameRange>().unwrap().contains(4));
+    }
+
+    #[test]
+    fn a_range_is_cut_at_a_number() {
+        for (text, end, cut) in [
+            ("1-241", 240, "1-240"),
+            ("235-250", 240, "235-240"),
+            ("1-9x4,3,7-8", 7, "1-5x4,3,7"),
+            ("1-9x4,20-30", 3, "1"),
+            ("4,2", 9, "2,4"),
+        ] {
+            let range: FrameRange = text.parse().unwrap();
+            assert_eq!(range.up_to_frame(end).unwrap().to_string(), cut);
+        }
+        let range: FrameRange = "5-9,12".parse().unwrap();
+        assert_eq!(range.up_to_frame(4), None);
     }
 
     #[test]

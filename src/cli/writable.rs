@@ -2,10 +2,12 @@
 
 use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::bail;
 use bytesize::ByteSize;
+
+use crate::output::{check_writable, led_to};
 
 /// The option that names the output, in every verb.
 pub(super) const OUTPUT: &str = "-o";
@@ -15,7 +17,7 @@ pub(super) const OUTPUT: &str = "-o";
 /// # Errors
 /// Why it cannot.
 pub(super) fn check(path: &Path, option: &str) -> anyhow::Result<()> {
-    check_in(folder_of(path), path, option)
+    check_in(path, option, |folder| folder)
 }
 
 /// Checks that `path` can be written, its folder being made where it is missing.
@@ -23,7 +25,7 @@ pub(super) fn check(path: &Path, option: &str) -> anyhow::Result<()> {
 /// # Errors
 /// Why it cannot.
 pub(super) fn check_with_parents(path: &Path) -> anyhow::Result<()> {
-    check_in(existing(folder_of(path)), path, OUTPUT)
+    check_in(path, OUTPUT, existing)
 }
 
 /// Checks that files can be written to a folder, which is made where it is missing.
@@ -32,7 +34,9 @@ pub(super) fn check_with_parents(path: &Path) -> anyhow::Result<()> {
 /// Why they cannot.
 pub(super) fn check_folder(folder: &Path) -> anyhow::Result<()> {
     let folder = or_current(folder);
-    check_folder_of(existing(folder), folder, OUTPUT)
+    // Links that lead in a circle are the system's to refuse.
+    let led_to = led_to(folder).unwrap_or_else(|_| folder.to_owned());
+    check_folder_of(existing(&led_to), folder, OUTPUT)
 }
 
 /// The folder, or the nearest above it that exists.
@@ -57,21 +61,32 @@ fn or_current(folder: &Path) -> &Path {
     }
 }
 
-fn check_in(folder: &Path, path: &Path, option: &str) -> anyhow::Result<()> {
+/// Checks that `path` can be written in the folder that `place` makes of its own.
+fn check_in(path: &Path, option: &str, place: fn(&Path) -> &Path) -> anyhow::Result<()> {
     match fs::metadata(path) {
-        Ok(kind) if kind.is_dir() => {
-            bail!(
-                "{} is a folder; give {option} a file's name",
-                path.display()
-            )
-        }
+        Ok(kind) if kind.is_dir() => bail!(
+            "{} is a folder; give {option} a file's name",
+            path.display()
+        ),
         // A file is replaced by renaming, which would remove a device or a pipe.
         Ok(kind) if !kind.is_file() => bail!(
             "{} is not a regular file; choose another file with {option}",
             path.display()
         ),
-        _ => check_folder_of(folder, path, option),
+        _ => {}
     }
+    let cannot = |error| {
+        anyhow::anyhow!(
+            "{}: the file cannot be written ({error}); choose another file with {option}",
+            path.display()
+        )
+    };
+    // The file that a link leads to is the one that is written.
+    let led_to = led_to(path).map_err(cannot)?;
+    if led_to.exists() {
+        check_writable(&led_to).map_err(cannot)?;
+    }
+    check_folder_of(place(folder_of(&led_to)), path, option)
 }
 
 /// Checks that files can be made in `folder`, for `path`.
@@ -135,25 +150,11 @@ pub(super) fn same_file(a: &Path, b: &Path) -> bool {
 /// Whether both paths lead to the same place, whether or not a file exists there.
 pub(super) fn same_place(a: &Path, b: &Path) -> bool {
     let place = |path: &Path| {
-        let path = follow_links(path);
+        let path = led_to(path).ok()?;
         Some((
             fs::canonicalize(folder_of(&path)).ok()?,
             path.file_name()?.to_owned(),
         ))
     };
     same_file(a, b) || (place(a).is_some() && place(a) == place(b))
-}
-
-/// What a path leads to through symbolic links, whether or not a file exists there.
-fn follow_links(path: &Path) -> PathBuf {
-    // As many as Linux follows.
-    const MOST_LINKS: usize = 40;
-    let mut path = path.to_owned();
-    for _ in 0..MOST_LINKS {
-        let Ok(link) = fs::read_link(&path) else {
-            break;
-        };
-        path = folder_of(&path).join(link);
-    }
-    path
 }

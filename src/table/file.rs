@@ -174,7 +174,7 @@ impl Table {
             .parent()
             .filter(|folder| !folder.as_os_str().is_empty());
         folder
-            .map_or(Ok(()), std::fs::create_dir_all)
+            .map_or(Ok(()), crate::output::make_folder)
             .and_then(|()| crate::output::write_whole(path, |file| file.write_all(self.bytes())))
             .map_err(|source| TableError::Unwritable {
                 path: path.into(),

@@ -253,14 +253,14 @@ fn misuse_is_reported_before_anything_is_done() {
         &["small.toml", "-o", "f_##.gif"],
         &[".png, .exr, .npz, .y4m"],
     );
-    misused(&["small.toml", "--frames", "19-21"], &["19-21", "1 to 20"]);
+    misused(&["small.toml", "--frames", "21-22"], &["21-22", "1 to 20"]);
     misused(
         &["small.toml", "--frames", "5-1"],
         &["5-1", "before it begins"],
     );
     misused(&["small.toml", "--frames", "0-4"], &["0-4", "from 1"]);
     misused(&["small.toml", "--frames", "1..4"], &["1..4", "1-240"]);
-    misused(&["small.toml", "--frames", "1-4294967295"], &["1 to 20"]);
+    misused(&["small.toml", "--frames", "21-4294967295"], &["1 to 20"]);
     misused(&["classic", "--frames", "2"], &["no frame 2"]);
     misused(
         &["small.toml", "--explain", "--frames", "2-3"],

@@ -56,7 +56,7 @@ pub(in crate::cli) struct RenderArgs {
     /// The frames of an animation: 12, 1-240, every tenth as 1-240x10 or 1-240:10, several with commas [default: all]
     #[arg(long, value_name = "RANGE")]
     pub(super) frames: Option<FrameRange>,
-    /// Draw finished frames again
+    /// Draw finished frames again, and replace files that other programs made
     #[arg(long)]
     pub(super) overwrite: bool,
     /// List the frames and their files, and draw nothing

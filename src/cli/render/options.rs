@@ -3,7 +3,7 @@
 use super::super::frame_range::FrameRange;
 use super::super::method::{Checked, Method};
 use super::super::misuse::misuse;
-use super::super::progress::Report;
+use super::super::progress::{Report, warn};
 use super::args::RenderArgs;
 use super::memory;
 use crate::render::Form;
@@ -72,17 +72,30 @@ fn overrides(args: &RenderArgs) -> Vec<Override> {
     overrides
 }
 
-/// The frames, all of which the animation has.
+/// All frames of the animation.
+pub(super) fn all_frames(animation: &Animation) -> FrameRange {
+    FrameRange::up_to(animation.frames())
+}
+
+/// The frames that are asked for and that the animation has. Prints which others are asked for.
 ///
 /// # Errors
-/// It has not.
+/// It has none of them.
 pub(super) fn frames(args: &RenderArgs, animation: &Animation) -> anyhow::Result<FrameRange> {
-    let all = FrameRange::up_to(animation.frames());
-    let range = args.frames.clone().unwrap_or(all);
-    let (number, frames) = (range.last(), animation.frames());
-    if number > frames {
+    let all = all_frames(animation);
+    let Some(asked) = &args.frames else {
+        return Ok(all);
+    };
+    let frames = animation.frames();
+    let Some(range) = asked.up_to_frame(frames) else {
+        let number = asked.last();
         let error = SceneError::NoFrame { number, frames };
-        return Err(misuse(format!("--frames {range}: {error}")));
+        return Err(misuse(format!("--frames {asked}: {error}")));
+    };
+    if asked.last() > frames {
+        warn(format_args!(
+            "--frames {asked}: the animation's frames are {all}; those beyond are left out"
+        ));
     }
     Ok(range)
 }

@@ -1,7 +1,6 @@
 //! The run: frames are drawn, written and counted.
 
 use std::convert::Infallible;
-use std::fs;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -12,7 +11,7 @@ use super::super::destination::Destination;
 use super::super::interrupt::Interrupt;
 use super::super::method::Method;
 use super::super::pattern::Pattern;
-use super::super::progress::{FrameProgress, ProgressKind, Report};
+use super::super::progress::{FrameProgress, ProgressKind, Report, warn};
 use super::super::writable;
 use super::draw::{DrawnFrame, FrameReport, FrameSource};
 use super::film::{Broken, Film};
@@ -20,7 +19,9 @@ use super::memory;
 use super::origin::FrameOrigin;
 use super::plan::Plan;
 use super::run_stats::RunStats;
-use super::{sequence, sky};
+use super::sequence::{self, Survey};
+use super::{options, sky};
+use crate::output::make_folder;
 use crate::sky::SkySource;
 
 /// What a run did.
@@ -113,13 +114,28 @@ fn prepare(
     origin: &FrameOrigin,
 ) -> anyhow::Result<()> {
     let folder = pattern.folder();
-    fs::create_dir_all(folder).map_err(|error| {
+    make_folder(folder).map_err(|error| {
         anyhow::anyhow!(
             "{}: the folder cannot be made: {error}; choose another place with -o",
             folder.display()
         )
     })?;
-    let present = sequence::clean_and_count(pattern, plan.frames);
+    let all = options::all_frames(plan.animation);
+    let Survey {
+        present,
+        foreign,
+        left_over,
+    } = sequence::survey(pattern, plan.frames, &all, plan.is_ours());
+    let files = |numbers: Vec<u32>| numbers.into_iter().map(|number| pattern.file(number));
+    if !foreign.is_empty() && !plan.args.overwrite {
+        return Err(sequence::foreign(files(foreign)));
+    }
+    if !left_over.is_empty() {
+        warn(format_args!(
+            "{}: left from before, and no frame of the animation, whose frames are {all}",
+            sequence::list(files(left_over))
+        ));
+    }
     let missing = plan.count.saturating_sub(present);
     let most = missing.saturating_mul(plan.most_bytes());
     if writable::free_space(folder).is_some_and(|free| most > free) {

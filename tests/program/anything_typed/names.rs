@@ -36,10 +36,10 @@ fn ranges_that_make_no_sense_are_refused_and_the_longest_are_accepted() {
         );
     }
     for range in [
-        "1-4294967295",
+        "10-4294967295",
         "10",
-        "1-9,4294967295",
-        "1-4294967295x1000000000",
+        "4294967295",
+        "10-4294967295x1000000000",
     ] {
         refused(
             here,
@@ -48,17 +48,12 @@ fn ranges_that_make_no_sense_are_refused_and_the_longest_are_accepted() {
             &["there is no frame", "1 to 9"],
         );
     }
-    done(
-        here,
-        &[
-            "render",
-            "small.toml",
-            "--frames",
-            "1-3,2-4,3,8-9x1,9",
-            "-o",
-            "f_#.png",
-        ],
-    );
+    for range in ["1-3,2-4,3,8-9x1,9", "8-4294967295", "1-9999999x10000000"] {
+        done(
+            here,
+            &["render", "small.toml", "--frames", range, "-o", "f_#.png"],
+        );
+    }
     let left: Vec<_> = files(here).into_keys().collect();
     assert_eq!(
         left,
