@@ -56,13 +56,14 @@ pub struct Unfinished {
 }
 
 impl Unfinished {
-    /// Removes what killed processes left for `path`, and [begins](Self::new) the file.
+    /// Makes the folder where it is missing, removes what killed processes left for `path`, and [begins](Self::new) the file.
     ///
     /// # Errors
     /// Those of [`Self::new`].
     pub fn after_leftovers(path: &Path) -> io::Result<Self> {
         let path = led_to(path)?;
         let name = path.file_name().map(label).unwrap_or_default();
+        make_folder(folder_of(&path))?;
         remove_leftovers(folder_of(&path), |left| left == name.as_encoded_bytes());
         Self::new(&path)
     }

@@ -9,8 +9,9 @@ use clap::{Args, ValueEnum};
 use super::misuse::misuse;
 use super::progress::{Report, warn};
 use super::remedy::with_remedy;
+use super::table_path::default_path;
 use crate::orbit::integrate::Adaptive;
-use crate::table::{self, Spec, SpecError, Table, TableError};
+use crate::table::{Spec, SpecError, Table, TableError};
 
 /// The table for rays of all kinds.
 pub(super) const DEFAULT_TABLE: &str = "standard";
@@ -19,8 +20,9 @@ pub(super) const DEFAULT_TABLE: &str = "standard";
 const TABLE_VARIABLE: &str = "DARKNESS_TABLE";
 
 const TABLE_HELP: &str = "The table to read with --method table [env: DARKNESS_TABLE] \
-    [default: tables/standard.table; a picture that needs less or more takes tables/draft.table or tables/fine.table; \
-    made where it is missing]";
+    [default: standard.table, made where it is missing, in the folder tables, or without such a folder in the user's \
+    cache (~/.cache/darkness, or the folder that DARKNESS_CACHE names); draft.table or fine.table for a picture that \
+    needs less or more]";
 
 /// The tolerances that [`Adaptive`] can be given. Above them it takes the upper bound; at the lower bound its steps are
 /// as short as helps.
@@ -145,7 +147,7 @@ impl MethodArgs {
         let variable = || std::env::var_os(TABLE_VARIABLE).filter(|name| !name.is_empty());
         let flag = self.table.clone().map(|path| (path, NamedBy::Flag));
         let named = flag.or_else(|| variable().map(|path| (path.into(), NamedBy::Variable)));
-        let default = || needed.map(|name| (table::default_path(name), NamedBy::Default));
+        let default = || needed.map(|name| (default_path(name), NamedBy::Default));
         let (path, named_by) = named.or_else(default)?;
         Some(TableFile { path, named_by })
     }

@@ -1,7 +1,6 @@
 //! Whether a file can be written, checked before the work that makes its content.
 
 use std::fs;
-use std::io;
 use std::path::Path;
 
 use anyhow::bail;
@@ -11,22 +10,6 @@ use crate::output::{check_writable, led_to};
 
 /// The option that names the output, in every verb.
 pub(super) const OUTPUT: &str = "-o";
-
-/// Checks that `path`, which `option` names, can be written, in a folder that exists.
-///
-/// # Errors
-/// Why it cannot.
-pub(super) fn check(path: &Path, option: &str) -> anyhow::Result<()> {
-    check_in(path, option, |folder| folder)
-}
-
-/// Checks that `path` can be written, its folder being made where it is missing.
-///
-/// # Errors
-/// Why it cannot.
-pub(super) fn check_with_parents(path: &Path) -> anyhow::Result<()> {
-    check_in(path, OUTPUT, existing)
-}
 
 /// Checks that files can be written to a folder, which is made where it is missing.
 ///
@@ -61,8 +44,11 @@ fn or_current(folder: &Path) -> &Path {
     }
 }
 
-/// Checks that `path` can be written in the folder that `place` makes of its own.
-fn check_in(path: &Path, option: &str, place: fn(&Path) -> &Path) -> anyhow::Result<()> {
+/// Checks that `path`, which `option` names, can be written. Its folder is made where it is missing, later.
+///
+/// # Errors
+/// Why it cannot.
+pub(super) fn check(path: &Path, option: &str) -> anyhow::Result<()> {
     match fs::metadata(path) {
         Ok(kind) if kind.is_dir() => bail!(
             "{} is a folder; give {option} a file's name",
@@ -86,7 +72,7 @@ fn check_in(path: &Path, option: &str, place: fn(&Path) -> &Path) -> anyhow::Res
     if led_to.exists() {
         check_writable(&led_to).map_err(cannot)?;
     }
-    check_folder_of(place(folder_of(&led_to)), path, option)
+    check_folder_of(existing(folder_of(&led_to)), path, option)
 }
 
 /// Checks that files can be made in `folder`, for `path`.
@@ -98,9 +84,6 @@ fn check_folder_of(folder: &Path, path: &Path, option: &str) -> anyhow::Result<(
         }
         // Rights, full disks and read-only mounts are the system's to judge: a nameless file leaves nothing behind.
         Ok(_) => tempfile::tempfile_in(folder).map(drop),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => bail!(
-            "{name}: the folder {place} does not exist; make it first, or choose another place with {option}"
-        ),
         Err(error) => Err(error),
     };
     made.map_err(|error| {
@@ -126,7 +109,7 @@ pub(super) fn free_space(folder: &Path) -> Option<u64> {
 /// # Errors
 /// There is not.
 pub(super) fn check_space(path: &Path, bytes: u64) -> anyhow::Result<()> {
-    let folder = folder_of(path);
+    let folder = existing(folder_of(path));
     match free_space(folder) {
         Some(free) if bytes > free => bail!(
             "{}: about {} are needed there, and {} are free; make room, choose another place with -o, or fewer frames \
@@ -151,10 +134,15 @@ pub(super) fn same_file(a: &Path, b: &Path) -> bool {
 pub(super) fn same_place(a: &Path, b: &Path) -> bool {
     let place = |path: &Path| {
         let path = led_to(path).ok()?;
-        Some((
-            fs::canonicalize(folder_of(&path)).ok()?,
-            path.file_name()?.to_owned(),
-        ))
+        let folder = folder_of(&path);
+        let there = existing(folder);
+        let below = folder.strip_prefix(there).unwrap_or(folder);
+        Some(
+            fs::canonicalize(there)
+                .ok()?
+                .join(below)
+                .join(path.file_name()?),
+        )
     };
     same_file(a, b) || (place(a).is_some() && place(a) == place(b))
 }

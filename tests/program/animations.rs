@@ -293,6 +293,15 @@ fn a_job_writes_the_files_that_render_writes_and_refuses_others_in_the_same_word
         (&["small.toml", "-o", "n/f_%02d.npz"], "n/f_%02d.npz"),
     ] {
         let job = printed(here, &[&["job", "slurm"], args].concat());
+        let stem = args[0].trim_end_matches(".toml");
+        for line in [
+            format!("#SBATCH --job-name=darkness-{stem}"),
+            "##SBATCH --partition=PARTITION".into(),
+            "##SBATCH --time=HH:MM:SS".into(),
+            "##SBATCH --mem=4G".into(),
+        ] {
+            assert!(job.lines().any(|its| its == line), "{line}: {job}");
+        }
         let task = Command::new("bash")
             .args(["-c", &job])
             .env("PATH", &path)

@@ -8,7 +8,11 @@
 #   sbatch --dependency=afterok:"$(sbatch --parsable --array=0 @FILE@ table)" @FILE@
 # Submitted again, it renders what is missing. The nodes need `darkness` on their PATH; sbatch passes its own PATH on.
 # To run at most 8 tasks at once: sbatch --array=0-@LAST_TASK@%8 @FILE@
-#SBATCH --job-name=darkness
+#SBATCH --job-name=@NAME@
+# What your cluster may ask for: fill in, and remove one # of each.
+##SBATCH --partition=PARTITION
+##SBATCH --time=HH:MM:SS
+##SBATCH --mem=4G
 #SBATCH --array=0-@LAST_TASK@
 #SBATCH --output=darkness-%A_%a.log
 #SBATCH --open-mode=append

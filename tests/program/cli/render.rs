@@ -212,7 +212,6 @@ fn render_checks_where_the_picture_goes_before_any_work() {
         ("x.jpg", 2, &["x.jpg", ".png"][..]),
         ("x", 2, &[".png"]),
         ("folder.png", 1, &["folder.png is a folder"]),
-        ("no/x.png", 1, &["no/x.png", "the folder no does not exist"]),
         ("file/x.png", 1, &["file/x.png", "file is not a folder"]),
     ] {
         refused(here, &["render", "-o", output], code, words);
@@ -226,6 +225,22 @@ fn render_checks_where_the_picture_goes_before_any_work() {
         &["/proc/x.png", "cannot be written"],
     );
     assert_eq!(listing(here), before, "something was written");
+}
+
+#[test]
+fn missing_folders_of_an_output_are_made() {
+    let folder = with_draft();
+    let here = folder.path();
+    let small = ["render", "--table", "a.table", "--size", SMALL, "-o"];
+    done(here, &[&small[..], &["stills/of/x.png"]].concat());
+    done(here, &[&small[..], &["films/x.y4m"]].concat());
+    assert_eq!(listing(&here.join("stills/of")), ["x.png"]);
+    assert_eq!(listing(&here.join("films")), ["x.y4m"]);
+    // None is made for a picture that is not drawn.
+    refused(here, &[&small[..], &["no/x.jpg"]].concat(), 2, &[".png"]);
+    let one_file = ["chart", "--quick", "-o", "no/a.svg", "--csv", "./no/a.svg"];
+    refused(here, &one_file, 2, &["name the same file"]);
+    assert_eq!(listing(here), ["a.table", "films", "stills"]);
 }
 
 #[test]

@@ -42,6 +42,35 @@ fn only_the_default_table_is_made_without_being_asked_for() {
     assert_eq!(listing(here), ["classic.png", "d.table", "tables"]);
 }
 
+/// Guards against a table beside every picture that a person makes, and one made again in every folder.
+#[test]
+#[cfg(target_os = "linux")]
+fn without_a_folder_of_tables_they_go_to_the_users_cache() {
+    let (folder, home) = (tempdir().unwrap(), tempdir().unwrap());
+    let here = folder.path();
+    let cache = home.path().join(".cache/darkness");
+    let render = || {
+        let mut command = darkness(here, &["render", "--size", SMALL]);
+        command.env("DARKNESS_CACHE", "").env("HOME", home.path());
+        finish(command.env_remove("XDG_CACHE_HOME")).1
+    };
+    let told = format!("{} is not there yet", cache.join("draft.table").display());
+    assert!(render().contains(&told));
+    assert!(!render().contains("draft.table is not there"));
+    assert_eq!(listing(here), ["classic.png"]);
+    assert_eq!(listing(&cache), ["draft.table"]);
+
+    let mut command = darkness(here, &["table", "draft"]);
+    command.env("DARKNESS_CACHE", "own");
+    finish(&mut command);
+    assert_eq!(listing(&here.join("own")), ["draft.table"]);
+
+    // A clone has the folder, and keeps its tables there.
+    fs::create_dir(here.join("tables")).unwrap();
+    assert!(render().starts_with("tables/draft.table is not there yet"));
+    assert_eq!(listing(&here.join("tables")), ["draft.table"]);
+}
+
 #[test]
 #[cfg(target_os = "linux")]
 fn a_table_that_cannot_be_kept_is_used_all_the_same() {
