@@ -220,7 +220,7 @@ fn a_read_only_file_is_not_replaced_and_the_mode_of_another_is_kept() {
         "--overwrite",
     ];
     let render = [&["render", "orbit"], &frames[..]].concat();
-    refused(here, &render, 1, &["1: out/f_#.png", "read-only"]);
+    refused(here, &render, 1, &["1: out/f_1.png: ", "read-only"]);
     assert_eq!(fs::read(here.join("out/f_1.png")).unwrap(), b"kept");
     assert_eq!(listing(&here.join("out")), ["f_1.png", "f_2.png"]);
 }

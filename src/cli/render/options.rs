@@ -5,6 +5,7 @@ use super::super::method::{Checked, Method};
 use super::super::misuse::misuse;
 use super::super::progress::{Report, warn};
 use super::args::RenderArgs;
+use super::format::Format;
 use super::memory;
 use crate::render::Form;
 use crate::scene::{Animation, ImageSize, LayerSet, SceneError};
@@ -25,26 +26,28 @@ pub(super) fn animation(args: &RenderArgs) -> anyhow::Result<Animation> {
             return Err(misuse(format!("{flag} needs --method table")));
         }
     }
-    let mut animation = Animation::load(&args.scene)?;
+    let mut animation = Animation::load(&args.scene).map_err(|error| with_hint(args, error))?;
     if let Some(size) = args.size {
         memory::check(args.max_memory, size, Form::Grey8)?;
         let ImageSize { width, height } = size;
         let sized = animation.with_size(width, height);
-        animation = sized.map_err(|error| misuse(format!("--size {width}x{height}: {error}")))?;
+        animation = sized.map_err(|error| of_flag(&format!("--size {width}x{height}"), &error))?;
     }
     if let Some(antialias) = args.antialias {
-        animation = animation.with_antialias(antialias)?;
+        let drawn = animation.with_antialias(antialias);
+        animation = drawn.map_err(|error| of_flag("--antialias", &error))?;
     }
     if let Some(pixels) = args.tolerance {
         let right = animation.with_tolerance(pixels);
-        animation = right.map_err(|error| misuse(format!("--tolerance {pixels}: {error}")))?;
+        animation = right.map_err(|error| of_flag(&format!("--tolerance {pixels}"), &error))?;
     }
     if let Some(names) = &args.layers {
         let layers = LayerSet::from_names(names).and_then(|layers| animation.with_layers(layers));
-        animation = layers.map_err(|error| misuse(format!("--layers: {error}")))?;
+        animation = layers.map_err(|error| of_layers(&error))?;
     }
     if let Some(bits) = args.bits {
-        animation = animation.with_bits(bits)?;
+        let wide = animation.with_bits(bits);
+        animation = wide.map_err(|error| of_flag("--bits", &error))?;
     }
     if let Some(stops) = args.exposure {
         if !animation.shows_colour() {
@@ -54,10 +57,38 @@ pub(super) fn animation(args: &RenderArgs) -> anyhow::Result<Animation> {
             ));
         }
         let exposed = animation.with_exposure(stops);
-        animation = exposed.map_err(|error| misuse(format!("--exposure {stops}: {error}")))?;
+        animation = exposed.map_err(|error| of_flag(&format!("--exposure {stops}"), &error))?;
     }
     memory::check(args.max_memory, animation.image(), Form::Grey8)?;
     Ok(animation)
+}
+
+/// The error of a value that is not allowed, of the option that gave it in place of the scene's key.
+fn of_flag(flag: &str, error: &SceneError) -> anyhow::Error {
+    match error {
+        SceneError::Value { reason, .. } => misuse(format!("{flag}: {reason}")),
+        _ => misuse(format!("{flag}: {error}")),
+    }
+}
+
+/// The error of a layer that is not allowed.
+fn of_layers(error: &SceneError) -> anyhow::Error {
+    match error {
+        SceneError::Value { value, .. } => of_flag(&format!("--layers {value}"), error),
+        _ => of_flag("--layers", error),
+    }
+}
+
+/// The error of a scene that cannot be read. Who gave an output's name there is told of `-o`.
+fn with_hint(args: &RenderArgs, error: SceneError) -> anyhow::Error {
+    let name = args.scene.display();
+    let is_output = Format::of_extension(&args.scene).is_some();
+    match error {
+        SceneError::Unknown { .. } | SceneError::Read { .. } if is_output => misuse(format!(
+            "{error}. To name the output, write -o before it: -o {name}"
+        )),
+        error => error.into(),
+    }
 }
 
 /// All frames of the animation.

@@ -134,9 +134,10 @@ fn a_picture_takes_the_smallest_table_that_is_good_enough() {
 fn tolerances_that_make_no_sense_are_refused_as_misuse() {
     let folder = tempdir().unwrap();
     for (args, words) in [
-        (&["--tolerance", "0"][..], "image.tolerance = 0.0"),
-        (&["--tolerance", "-1"], "image.tolerance = -1.0"),
-        (&["--tolerance", "nan"], "image.tolerance = NaN"),
+        (&["--tolerance", "0"][..], "--tolerance 0: an edge's"),
+        (&["--tolerance", "-1"], "--tolerance -1: an edge's"),
+        (&["--tolerance", "nan"], "--tolerance NaN: an edge's"),
+        (&["--size", "0x9"], "--size 0x9: a picture's side"),
         (&["--tolerance", "2"], "at most 1 pixel"),
         (
             &["--tolerance", "0.1", "--method", "exact"],

@@ -162,7 +162,9 @@ fn inspect_and_verify_describe_a_table() {
         verified.contains(&format!("all {size} bytes")),
         "{verified}"
     );
-    refused(here, &["table", "verify", "no.table"], 1, &["no.table"]);
+    for verb in ["inspect", "verify"] {
+        refused(here, &["table", verb, "no.table"], 2, &["no.table"]);
+    }
 }
 
 #[test]
