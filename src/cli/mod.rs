@@ -1,7 +1,7 @@
 //! The command line: one file for each verb.
 //!
 //! Data goes to the standard output, everything else to the standard error. The exit code is 0 for success, 1 for a
-//! failure, 2 for a command line that makes no sense. A reader that closes the standard output ends the run quietly.
+//! failure, 2 for a command line, or a scene, that makes no sense or names what is not there. A reader that closes the standard output ends the run quietly.
 
 mod chart;
 mod completions;
@@ -35,6 +35,8 @@ use progress::{Report, warn};
 use stdio::StdoutError;
 use threads::{STARTING_MEMORY, check_memory};
 
+use crate::scene::SceneError;
+
 /// Renders what a black hole does to the light of its accretion disk.
 ///
 /// The equation of light around a Schwarzschild hole is solved once, for all rays, into a small table. A picture of the
@@ -63,7 +65,8 @@ Examples:
   darkness chart --quick                     speed against accuracy on this machine, as chart.svg
   darkness completions bash                  for zsh, fish, powershell too; darkness man: manual pages
 
-Exit codes: 0 success, 1 failure, 2 usage error, 130 and 143 stopped by Ctrl-C and SIGTERM.";
+Exit codes: 0 success, 1 failure, 2 usage error (an option, a scene, or an input that is not there), 130 and 143 stopped
+by Ctrl-C and SIGTERM.";
 
 #[derive(Debug, Subcommand)]
 enum Verb {
@@ -117,12 +120,20 @@ pub fn run() -> ExitCode {
         }
         Err(error) => {
             warn(&error);
-            ExitCode::from(match error.downcast_ref::<Interrupted>() {
-                Some(interrupted) => interrupted.code(),
-                None if error.is::<Misuse>() => 2,
-                None => 1,
-            })
+            ExitCode::from(code(&error))
         }
+    }
+}
+
+/// The exit code of a failed run.
+fn code(error: &anyhow::Error) -> u8 {
+    match (error.downcast_ref(), error.downcast_ref()) {
+        (Some(interrupted), _) => Interrupted::code(interrupted),
+        // The scene is a part of the command line, but a disk that fails while it is read is not.
+        (_, Some(SceneError::Read { error, .. })) if error.raw_os_error().is_some() => 1,
+        (_, Some(_)) => 2,
+        _ if error.is::<Misuse>() => 2,
+        _ => 1,
     }
 }
 

@@ -190,8 +190,19 @@ impl<'a> Inspection<'a> {
     }
 }
 
+/// Opens a table that the command line names.
+///
+/// # Errors
+/// A misuse if it is not there; a table that cannot be read.
+fn open(file: &Path) -> anyhow::Result<Table> {
+    Table::open(file).map_err(|error| match error {
+        TableError::Missing { .. } => misuse(with_remedy(&error).to_string()),
+        _ => with_remedy(&error),
+    })
+}
+
 fn inspect(file: &Path, json: bool) -> anyhow::Result<()> {
-    let table = Table::open(file).map_err(|error| with_remedy(&error))?;
+    let table = open(file)?;
     let inspection = Inspection::new(table.metadata(), table.bytes().len());
     let mut stdout = io::stdout().lock();
     let printed = if json {
@@ -205,7 +216,7 @@ fn inspect(file: &Path, json: bool) -> anyhow::Result<()> {
 }
 
 fn verify(file: &Path, report: Report) -> anyhow::Result<()> {
-    let table = Table::open(file).map_err(|error| with_remedy(&error))?;
+    let table = open(file)?;
     let metadata = table.metadata();
     let anew = method::make(&metadata.spec, report)?;
     let measured = table::measure(&metadata.spec, &table.lookup());

@@ -16,6 +16,14 @@ impl Builtin {
         builtins().iter().find(|builtin| builtin.name == name)
     }
 
+    /// The name of the built-in scene that was probably meant by `name`, of which at most a third is wrong.
+    pub fn meant(name: &str) -> Option<&'static str> {
+        let names = builtins().iter().map(Self::name);
+        let nearest = names.min_by_key(|known| strsim::osa_distance(name, known))?;
+        let wrong = strsim::osa_distance(name, nearest);
+        (3 * wrong <= nearest.len()).then_some(nearest)
+    }
+
     /// Its name.
     pub fn name(&self) -> &'static str {
         self.name
@@ -101,6 +109,22 @@ mod tests {
             );
         }
         assert_eq!(builtins()[0].name(), DEFAULT_SCENE);
+    }
+
+    #[test]
+    fn a_misspelled_name_leads_to_the_one_that_was_meant() {
+        for (name, meant) in [
+            ("orbt", Some("orbit")),
+            ("clasic", Some("classic")),
+            ("classc", Some("classic")),
+            ("lit_orbit", Some("lit-orbit")),
+            ("Edge-on", Some("edge-on")),
+            ("gird", Some("grid")),
+            ("foo", None),
+            ("mine.toml", None),
+        ] {
+            assert_eq!(Builtin::meant(name), meant, "{name}");
+        }
     }
 
     #[test]

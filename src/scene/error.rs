@@ -53,8 +53,9 @@ pub enum SceneError {
     },
     /// No built-in scene and no file has this name.
     #[error(
-        "{} is neither a built-in scene ({}) nor a file",
+        "{} is neither a file nor a built-in scene{} (these are {})",
         path.display(),
+        path.to_str().and_then(Builtin::meant).map_or(String::new(), |name| format!("; did you mean {name}?")),
         builtins().iter().map(Builtin::name).collect::<Vec<_>>().join(", ")
     )]
     Unknown {

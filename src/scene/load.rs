@@ -1,6 +1,6 @@
 //! Scenes and animations from text, files and the built-in ones.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 use std::sync::Arc;
@@ -122,17 +122,19 @@ fn load<T>(
 
 /// Reads a file of at most [`LONGEST_FILE`] bytes: a device may have no end.
 fn read(path: &Path) -> io::Result<String> {
-    let mut text = String::new();
+    let wrong = |problem| io::Error::new(io::ErrorKind::InvalidData, problem);
+    if fs::metadata(path)?.is_dir() {
+        return Err(wrong("it is a folder, and a scene is a TOML file"));
+    }
+    let mut bytes = Vec::new();
     let length = File::open(path)?
         .take(LONGEST_FILE + 1)
-        .read_to_string(&mut text)?;
-    if length as u64 > LONGEST_FILE {
-        return Err(io::Error::new(
-            io::ErrorKind::InvalidData,
-            "it is over 1 MiB long, which no scene is",
-        ));
+        .read_to_end(&mut bytes)?;
+    // A long picture is no text in its first part already, which says more than its length.
+    if length as u64 > LONGEST_FILE && str::from_utf8(&bytes).is_ok() {
+        return Err(wrong("it is over 1 MiB long, which no scene is"));
     }
-    Ok(text)
+    String::from_utf8(bytes).map_err(|_| wrong("it is not a text in UTF-8, as a scene's TOML is"))
 }
 
 #[cfg(test)]

@@ -12,12 +12,12 @@
 //! focus    = [0.0, 0.0, 0.0]         # default: the hole
 //! up       = [0.0, 0.0, 1.0]         # default: +z; beside angles, where the inclination falls
 //! roll     = 0.0                     # default; degrees; positive turns the picture's content clockwise
-//! fov      = 30.0                    # required; vertical field of view, degrees, 0 < fov < 180
+//! fov      = 30.0                    # default; vertical field of view, degrees, 0 < fov < 180
 //! # or, in its place: fov_horizontal = 51.0
 //!
 //! [disk]
-//! inner  = 3.0                       # required; ≥ 3, the innermost stable circular orbit
-//! outer  = 12.0                      # required; > inner
+//! inner  = 3.0                       # default; ≥ 3, the innermost stable circular orbit
+//! outer  = 12.0                      # default; > inner
 //! normal = [0.0, 0.0, 1.0]           # default: +z
 //!
 //! [disk.light]                       # default: none, the picture is a mask
@@ -36,8 +36,8 @@
 //! grid     = 15.0                    # default: none; lines every so many degrees; 1 to 90, divides 180
 //!
 //! [image]
-//! width  = 1920                      # required
-//! height = 1080                      # required
+//! width  = 1920                      # default
+//! height = 1080                      # default
 //! antialias = true                   # default; false: each pixel is what its centre sees, 255 or 0
 //! tolerance = 0.001                  # default; an edge's largest error, in pixels; 0 < tolerance ≤ 1
 //! exposure = 0.0                     # default; stops: pictures show light times 2 to this power; -100 to 100

@@ -224,7 +224,7 @@ fn an_invalid_frame_does_not_affect_the_others() {
     refused(
         here,
         &["render", "bad.toml", "-o", PATTERN],
-        1,
+        2,
         &["frame 51", "camera.focus"],
     );
 }
@@ -348,9 +348,89 @@ fn a_camera_path_through_the_disk_or_hole_is_refused_before_the_first_frame() {
     ] {
         let bad = toml.replace("radius = 30.0, inclination = 80.0", path);
         fs::write(here.join("bad.toml"), bad).unwrap();
-        refused(here, &["render", "bad.toml", "-o", PATTERN], 1, &words);
+        refused(here, &["render", "bad.toml", "-o", PATTERN], 2, &words);
         assert!(!here.join("out").exists());
     }
+}
+
+/// Guards against frames that are all equal because a key has no effect.
+#[test]
+fn a_position_without_effect_and_an_animation_in_which_nothing_moves_are_told_of() {
+    let folder = with_animation(3);
+    let here = folder.path();
+    let toml = fs::read_to_string(here.join("small.toml")).unwrap();
+    let write = |text: &str| fs::write(here.join("bad.toml"), text).unwrap();
+    let render = ["render", "bad.toml", "-o", PATTERN];
+    write(&toml.replace("[camera]", "[camera]\nposition = [20, 0, 5]"));
+    let words = ["camera.position means nothing beside animation.orbit"];
+    refused(here, &render, 2, &words);
+    assert!(!here.join("out").exists());
+
+    let still = toml.replace("[0.0, 360.0]", "0.0");
+    write(&still);
+    let (_, stderr) = done(here, &render);
+    assert!(
+        stderr.contains("nothing moves in this animation: its 3 frames"),
+        "{stderr}"
+    );
+    let frames = files(&here.join("out"));
+    assert_eq!(frames.len(), 3);
+    let key =
+        |frame: u32, fov: u32| format!("\n[[animation.keyframe]]\nframe = {frame}\nfov = {fov}\n");
+    write(&format!("{still}{}{}", key(1, 30), key(3, 31)));
+    assert!(!done(here, &render).1.contains("nothing moves"));
+
+    let orbit = toml.lines().find(|line| line.starts_with("orbit")).unwrap();
+    let positions = "[[animation.keyframe]]\nframe = 1\nposition = [30, 0, 5]\n\
+                     [[animation.keyframe]]\nframe = 3\nposition = [20, 0, 5]\n";
+    let positions = toml.replace(orbit, positions);
+    write(&positions);
+    assert!(!done(here, &render).1.contains("camera.position"));
+    write(&positions.replace("[camera]", "[camera]\nposition = [9, 9, 9]"));
+    let (_, stderr) = done(here, &render);
+    assert!(stderr.contains("camera.position has no effect"), "{stderr}");
+}
+
+/// Guards against "1 frames", and against a pattern that is told in place of a file.
+#[test]
+fn one_frame_is_told_of_as_one_with_its_name() {
+    let folder = with_animation(4);
+    let here = folder.path();
+    let render = [
+        "render",
+        "small.toml",
+        "-o",
+        PATTERN,
+        "--progress",
+        "openjd",
+    ];
+    let one = [&render[..], &["--frames", "3"]].concat();
+    let (_, stderr) = done(here, &one);
+    assert!(
+        stderr.contains("out/f_0003.png: 96 × 54, table draft"),
+        "{stderr}"
+    );
+    assert!(stderr.contains("1 of 1 frame, "), "{stderr}");
+    assert!(
+        done(here, &one)
+            .1
+            .contains("out/f_0003.png: the frame was finished before")
+    );
+    fs::create_dir(here.join("out/f_0002.png")).unwrap();
+    let (output, stderr) = run(here, &[&render[..], &["--frames", "2-3"]].concat());
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        stderr.contains(
+            "1 frame failed; the same command tries it again:\n  2: out/f_0002.png: cannot"
+        ),
+        "{stderr}"
+    );
+    let (_, stderr) = done(here, &[&render[..], &["--frames", "3-4"]].concat());
+    assert!(
+        stderr.contains("1 frame of 96 × 54") && stderr.contains("; 1 was finished before"),
+        "{stderr}"
+    );
+    assert!(!stderr.contains("1 frames"), "{stderr}");
 }
 
 #[test]

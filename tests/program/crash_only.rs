@@ -36,7 +36,7 @@ fn a_rerun_draws_frames_that_are_missing_damaged_or_of_another_scene_or_table() 
     assert!(drawn(&["--overwrite"]).contains("10 frames of"));
     assert!(files(&out) == first);
     assert!(drawn(&["--size", "32x18", "--frames", "2"]).contains("32 × 18"));
-    assert!(drawn(&[]).contains("1 frames of") && files(&out) == first);
+    assert!(drawn(&[]).contains("1 frame of") && files(&out) == first);
 }
 
 #[test]

@@ -191,6 +191,7 @@ fn files_without_permission_are_reported_and_left_alone() {
         command
             .current_dir(here)
             .env_remove("DARKNESS_TABLE")
+            .env("DARKNESS_CACHE", "tables")
             .args(["-c", &line.replace("{}", "./darkness")]);
         if is_root {
             command.uid(65534).gid(65534);

@@ -196,7 +196,7 @@ fn light_that_makes_no_sense_is_refused_with_what_to_change() {
         fs::write(here.join("bad.toml"), scene.replace(line, other)).unwrap();
         for output in ["f.png", "f.exr", "f.npz", "f.y4m"] {
             let words = [&["bad.toml"], words].concat();
-            refused(here, &["render", "bad.toml", "-o", output], 1, &words);
+            refused(here, &["render", "bad.toml", "-o", output], 2, &words);
         }
     }
     assert_eq!(listing(here), ["bad.toml"]);

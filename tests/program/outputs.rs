@@ -164,12 +164,8 @@ fn a_link_that_leads_to_no_file_yet_is_followed() {
     assert!(here.join("out/f_2.png").is_symlink() && here.join("disk/2.png").is_file());
 
     symlink("nowhere/p.png", here.join("q.png")).unwrap();
-    refused(
-        here,
-        &["render", "-o", "q.png"],
-        1,
-        &["q.png", "folder", "nowhere", "does not exist"],
-    );
+    done(here, &["render", "-o", "q.png"]);
+    assert!(here.join("nowhere/p.png").is_file());
     symlink("round.png", here.join("round.png")).unwrap();
     refused(
         here,
@@ -220,7 +216,7 @@ fn a_read_only_file_is_not_replaced_and_the_mode_of_another_is_kept() {
         "--overwrite",
     ];
     let render = [&["render", "orbit"], &frames[..]].concat();
-    refused(here, &render, 1, &["1: out/f_#.png", "read-only"]);
+    refused(here, &render, 1, &["1: out/f_1.png: ", "read-only"]);
     assert_eq!(fs::read(here.join("out/f_1.png")).unwrap(), b"kept");
     assert_eq!(listing(&here.join("out")), ["f_1.png", "f_2.png"]);
 }

@@ -107,7 +107,8 @@ fn a_panorama_that_is_none_is_refused() {
             &[&["panorama sky.png: "], words].concat(),
         );
     };
-    refused(&["cannot be read", "No such file"]);
+    let words = ["panorama sky.png: ", "cannot be read", "No such file"];
+    is_refused(here, "p.toml", "", 2, &words);
     fs::create_dir(&path).unwrap();
     refused(&["not a regular file"]);
     fs::remove_dir(&path).unwrap();
@@ -163,7 +164,12 @@ fn a_catalogue_that_is_none_is_refused() {
             &[&["star catalogue stars.csv: "], words].concat(),
         );
     };
-    refused(&["cannot be read", "No such file"]);
+    let words = [
+        "star catalogue stars.csv: ",
+        "cannot be read",
+        "No such file",
+    ];
+    is_refused(here, "s.toml", "", 2, &words);
     fs::create_dir(&path).unwrap();
     refused(&["not a regular file"]);
     fs::remove_dir(&path).unwrap();

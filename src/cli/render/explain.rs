@@ -52,6 +52,7 @@ pub(super) fn run(
         text.push_str(&escape_line(&curve));
     }
     if let Some(sky) = scene.sky().filter(|_| form.shows_light()) {
+        sky::check_files(Some(sky))?;
         let frame = memory::of_frame(scene.image(), form);
         let source = sky::read(sky, frame, args.max_memory, report)?;
         text.push_str(&sky_lines(sky, &source));

@@ -50,11 +50,15 @@ impl Format {
         }
     }
 
+    /// The format of a path's extension, if it is that of one.
+    pub(super) fn of_extension(path: &Path) -> Option<Self> {
+        let mut formats = Self::value_variants().iter().copied();
+        formats.find(|format| has_extension(path, format.extension()))
+    }
+
     /// The format of a path's extension, [`Self::Png`] for any other.
     pub(super) fn of(path: &Path) -> Self {
-        let formats = Self::value_variants().iter().copied();
-        let mut named = formats.filter(|format| has_extension(path, format.extension()));
-        named.next().unwrap_or(Self::Png)
+        Self::of_extension(path).unwrap_or(Self::Png)
     }
 
     /// The extension of its files.

@@ -5,6 +5,7 @@ use super::super::method::{Checked, Method};
 use super::super::misuse::misuse;
 use super::super::progress::{Report, warn};
 use super::args::RenderArgs;
+use super::format::Format;
 use super::memory;
 use crate::render::Form;
 use crate::scene::{Animation, ImageSize, Override, SceneError};
@@ -25,11 +26,11 @@ pub(super) fn animation(args: &RenderArgs) -> anyhow::Result<Animation> {
             return Err(misuse(format!("{flag} needs --method table")));
         }
     }
+    if let Some(size) = args.size {
+        memory::check(args.max_memory, size, Form::Grey8)?;
+    }
     let animation = Animation::load_with(&args.scene, &overrides(args));
-    let animation = animation.map_err(|error| match error {
-        SceneError::Override { .. } => misuse(error.to_string()),
-        error => error.into(),
-    })?;
+    let animation = animation.map_err(|error| with_hint(args, error))?;
     if args.exposure.is_some() && !animation.shows_colour() {
         return Err(misuse(
             "--exposure changes light, and this scene has none; give it a [disk.light] or a [sky], or leave \
@@ -61,15 +62,31 @@ fn overrides(args: &RenderArgs) -> Vec<Override> {
             overrides.push(Override::new(flag, key, i64::from(side)));
         }
     }
-    let antialias = args.antialias.map(|smooth| ("antialias", smooth.into()));
-    let bits = args.bits.map(|bits| ("bits", i64::from(bits).into()));
-    let layers = args.layers.clone().map(|names| ("layers", names.into()));
-    for (flag, value) in antialias.into_iter().chain(bits).chain(layers) {
-        let (flag, key) = (format!("--{flag}"), format!("image.{flag}"));
-        let value: toml::Value = value;
-        overrides.push(Override::new(flag, &key, value));
+    if let Some(smooth) = args.antialias {
+        let flag = format!("--antialias {smooth}");
+        overrides.push(Override::new(flag, "image.antialias", smooth));
+    }
+    if let Some(bits) = args.bits {
+        let flag = format!("--bits {bits}");
+        overrides.push(Override::new(flag, "image.bits", i64::from(bits)));
+    }
+    if let Some(names) = &args.layers {
+        let flag = format!("--layers {}", names.join(","));
+        overrides.push(Override::new(flag, "image.layers", names.clone()));
     }
     overrides
+}
+
+/// The error of a scene that cannot be read. Who gave an output's name there is told of `-o`.
+fn with_hint(args: &RenderArgs, error: SceneError) -> anyhow::Error {
+    let name = args.scene.display();
+    let is_output = Format::of_extension(&args.scene).is_some();
+    match error {
+        SceneError::Unknown { .. } | SceneError::Read { .. } if is_output => misuse(format!(
+            "{error}. To name the output, write -o before it: -o {name}"
+        )),
+        error => error.into(),
+    }
 }
 
 /// All frames of the animation.

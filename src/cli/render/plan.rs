@@ -82,6 +82,7 @@ impl<'a> Plan<'a> {
             animation.check(number)?;
         }
         let sky = animation.sky().filter(|_| form.shows_light());
+        sky::check_files(sky)?;
         // Films record nothing.
         let sky_fingerprint = sky::fingerprint(sky.filter(|_| !format.is_film()))?;
         let plan = Self {

@@ -211,7 +211,7 @@ impl Run<'_> {
         // The reason without the frame's own file name: equal reasons of many frames are reported together.
         let write = |number, file: &[u8]| {
             sequence::write(&pattern.file(number), file, &self.plan.inputs)
-                .map_err(|error| anyhow::anyhow!("{pattern} cannot be written: {error}"))
+                .map_err(|error| anyhow::anyhow!("cannot be written: {error}"))
         };
         let done = |drawn: DrawnFrame<'_>| {
             let number = drawn.number;

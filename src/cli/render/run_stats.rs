@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use super::super::destination::Destination;
+use super::super::progress::count;
 use super::draw::FrameReport;
 
 /// Counts, times and failures of frames, which several threads report.
@@ -24,7 +26,7 @@ pub(super) struct Counts {
     pub(super) worst: Option<(u32, FrameReport)>,
     /// Times summed over all threads: for curves, pixels, encoding and writing.
     pub(super) times: [Duration; 4],
-    /// The numbers of the frames that failed, by reason.
+    /// The numbers of the frames that failed, by what is wrong with their files.
     failures: BTreeMap<String, Vec<u32>>,
 }
 
@@ -74,17 +76,22 @@ impl RunStats {
 
 impl Counts {
     /// The frames that failed, by reason, in words; [`None`] if none did.
-    pub(super) fn failures(&self) -> Option<String> {
+    pub(super) fn failures(&self, destination: &Destination) -> Option<String> {
         if self.failures.is_empty() {
             return None;
         }
-        let count: usize = self.failures.values().map(Vec::len).sum();
-        let noun = if count == 1 { "frame" } else { "frames" };
-        let mut text = format!("{count} {noun} failed; the same command tries them again:");
+        let failed: usize = self.failures.values().map(Vec::len).sum();
+        let again = if failed == 1 { "it" } else { "them" };
+        let frames = count(failed as u64, "frame");
+        let mut text = format!("{frames} failed; the same command tries {again} again:");
         for (reason, numbers) in &self.failures {
             let mut numbers = numbers.clone();
             numbers.sort_unstable();
-            let _ = write!(text, "\n  {}: {reason}", ranges(&numbers));
+            let name = match numbers.as_slice() {
+                [only] => destination.file(*only).display().to_string(),
+                _ => destination.to_string(),
+            };
+            let _ = write!(text, "\n  {}: {name}: {reason}", ranges(&numbers));
         }
         Some(text)
     }
@@ -105,19 +112,23 @@ fn ranges(numbers: &[u32]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::pattern::Pattern;
     use super::*;
 
     #[test]
     fn failures_are_listed_by_reason_in_ranges_that_can_be_asked_for_again() {
         let stats = RunStats::default();
-        assert_eq!(stats.counts().failures(), None);
+        let pattern = Pattern::parse("out/f_##.png".as_ref()).unwrap().unwrap();
+        let destination = Destination::Sequence(pattern);
+        assert_eq!(stats.counts().failures(&destination), None);
         for number in [9, 3, 5, 4] {
             stats.failed(number, &"the disk is full");
         }
         stats.failed(7, &"no right");
         assert_eq!(
-            stats.counts().failures().unwrap(),
-            "5 frames failed; the same command tries them again:\n  7: no right\n  3-5,9: the disk is full"
+            stats.counts().failures(&destination).unwrap(),
+            "5 frames failed; the same command tries them again:\n  \
+             7: out/f_07.png: no right\n  3-5,9: out/f_##.png: the disk is full"
         );
     }
 }

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::super::destination::Destination;
 use super::super::method::Method;
-use super::super::progress::{Report, duration, warn};
+use super::super::progress::{Report, count, duration, warn};
 use super::draw::FrameReport;
 use super::plan::Plan;
 use super::run::Outcome;
@@ -35,9 +35,13 @@ pub(super) fn report(
             Destination::Sequence(_) => "; the same command continues from there",
             _ => "; an unfinished file is not kept",
         };
-        format!("{finished} of {} frames are finished{rest}", plan.count)
+        let verb = if plan.count == 1 { "is" } else { "are" };
+        format!(
+            "{finished} of {} {verb} finished{rest}",
+            count(plan.count, "frame")
+        )
     });
-    match (counts.failures(), &interrupted) {
+    match (counts.failures(&plan.destination), &interrupted) {
         (Some(failures), Ok(())) => anyhow::bail!("{failures}"),
         (Some(failures), Err(_)) => warn(failures),
         (None, _) => {}
@@ -47,23 +51,31 @@ pub(super) fn report(
     let (destination, size) = (&plan.destination, plan.first.image());
     let what = format!("{} × {}, {method}", size.width, size.height);
     let time = duration(outcome.elapsed);
-    if drawn == 0 {
-        let all = if kept == 1 {
-            "the frame was"
-        } else {
-            "all frames were"
+    if plan.count == 1 {
+        let number = plan.frames.iter().next().unwrap_or(1);
+        let file = match destination {
+            Destination::Sequence(pattern) => pattern.file(number).display().to_string(),
+            _ => destination.to_string(),
         };
-        report.note(format_args!("{destination}: {all} finished before"));
-    } else if plan.count == 1 {
-        report.note(format_args!("{destination}: {what}, drawn in {time}"));
+        if drawn == 0 {
+            report.note(format_args!("{file}: the frame was finished before"));
+        } else {
+            report.note(format_args!("{file}: {what}, drawn in {time}"));
+        }
+    } else if drawn == 0 {
+        report.note(format_args!(
+            "{destination}: all frames were finished before"
+        ));
     } else {
         let rate = drawn as f64 / outcome.elapsed.as_secs_f64();
         let before = match kept {
             0 => String::new(),
+            1 => "; 1 was finished before".into(),
             kept => format!("; {kept} were finished before"),
         };
         report.note(format_args!(
-            "{destination}: {drawn} frames of {what}, in {time}, {rate:.1} frames/s{before}"
+            "{destination}: {} of {what}, in {time}, {rate:.1} frames/s{before}",
+            count(drawn, "frame")
         ));
     }
     Ok(())

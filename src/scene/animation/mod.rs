@@ -40,7 +40,7 @@ use glam::DVec3;
 
 use super::checked::Scene;
 use super::error::SceneError;
-use super::file::{Interpolation, KeyframeTable, SceneFile};
+use super::file::{AnimationTable, Interpolation, KeyframeTable, SceneFile};
 use super::validate;
 use super::values::{Camera, Disk, ImageSettings};
 use super::vector::cosine;
@@ -131,13 +131,18 @@ impl Animation {
                     "animation.orbit and keyframes both set the camera's position; remove one of them",
                 ));
             }
-            (Some(orbit), [], _) => Position::Orbit(orbit?),
+            (Some(_), [], Some(_)) => {
+                return Err(SceneError::toml(
+                    "camera.position means nothing beside animation.orbit, which moves the camera; remove one of them",
+                ));
+            }
+            (Some(orbit), [], None) => Position::Orbit(orbit?),
             (None, [_, ..], _) => Position::new(&position, interpolation)?,
             (None, [], Some(position)) => Position::still(position)?,
             (None, [], None) => {
                 return Err(SceneError::toml(
-                    "camera.position is missing; give it, or camera.radius, inclination and azimuth. Only an animation with \
-                     an orbit or with positions in its keyframes can leave it out",
+                    "camera.position is missing; give it, or camera.radius, inclination and azimuth. Only an animation \
+                     with an orbit or with positions in its keyframes can leave it out",
                 ));
             }
         };
@@ -213,6 +218,24 @@ impl Animation {
     /// Whether the scene has no `[animation]`: it has one frame then.
     pub fn is_still(&self) -> bool {
         self.file.animation.is_none()
+    }
+
+    /// Whether anything moves. Without it all frames are equal.
+    pub fn moves(&self) -> bool {
+        self.frames > 1
+            && self
+                .file
+                .animation
+                .as_ref()
+                .is_some_and(AnimationTable::moves)
+    }
+
+    /// Whether `camera.position` is given and has no effect, since keyframes set the position.
+    pub fn ignores_position(&self) -> bool {
+        let table = self.file.animation.as_ref();
+        let is_set =
+            table.is_some_and(|table| table.keyframe.iter().any(|key| key.position.is_some()));
+        is_set && self.file.camera.position().is_some()
     }
 
     /// The scene of frame `number`.

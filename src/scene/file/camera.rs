@@ -21,6 +21,21 @@ pub(in crate::scene) struct CameraTable {
     pub(in crate::scene) fov: Fov,
 }
 
+/// The vertical field of view where none is given, in degrees.
+const DEFAULT_FOV: f64 = 30.0;
+
+impl Default for CameraTable {
+    fn default() -> Self {
+        Self {
+            place: None,
+            focus: [0.0; 3],
+            up: None,
+            roll: 0.0,
+            fov: Fov::Vertical(DEFAULT_FOV),
+        }
+    }
+}
+
 /// Where a camera stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::scene) enum Place {
@@ -91,7 +106,7 @@ impl TryFrom<CameraKeys> for CameraTable {
         let fov = match (keys.fov, keys.fov_horizontal) {
             (Some(fov), None) => Fov::Vertical(fov),
             (None, Some(fov)) => Fov::Horizontal(fov),
-            (None, None) => return Err("missing field `fov`; or give `fov_horizontal`"),
+            (None, None) => Fov::Vertical(DEFAULT_FOV),
             (Some(_), Some(_)) => {
                 return Err(
                     "camera.fov and camera.fov_horizontal are both given; remove one of them",

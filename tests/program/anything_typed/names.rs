@@ -197,6 +197,6 @@ fn names_that_look_like_options_or_patterns_are_taken_as_names() {
     finish(job.env("SLURM_ARRAY_TASK_ID", "0"));
     assert!(here.join("-o_2.png").is_file());
     let (code, said) = typed(here, &words(&["render", "\u{1b}[31m.toml"]));
-    assert_eq!(code, 1);
+    assert_eq!(code, 2);
     is_sentence(&said);
 }

@@ -236,6 +236,6 @@ fn what_excludes_each_other_or_is_not_allowed_is_refused_with_key_and_option() {
         ),
     ] {
         fs::write(here.join("bad.toml"), format!("[camera]\n{camera}\n{REST}")).unwrap();
-        refused(here, &["render", "bad.toml"], 1, &words);
+        refused(here, &["render", "bad.toml"], 2, &words);
     }
 }

@@ -137,6 +137,7 @@ fn tolerances_that_make_no_sense_are_refused_as_misuse() {
         (&["--tolerance", "0"][..], "--tolerance 0: an edge's"),
         (&["--tolerance", "-1"], "--tolerance -1: an edge's"),
         (&["--tolerance", "nan"], "--tolerance NaN: an edge's"),
+        (&["--size", "0x9"], "--size 0x9: a picture's side"),
         (&["--tolerance", "2"], "at most 1 pixel"),
         (
             &["--tolerance", "0.1", "--method", "exact"],
