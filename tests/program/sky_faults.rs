@@ -40,7 +40,10 @@ fn limited(here: &Path, line: &str) -> Output {
 fn limited_to(kibibytes: u32, here: &Path, line: &str) -> Output {
     let line = format!("ulimit -v {kibibytes}; exec timeout 60 '{PROGRAM}' {line}");
     let mut command = Command::new("sh");
-    command.current_dir(here).env_remove("DARKNESS_TABLE");
+    command
+        .current_dir(here)
+        .env_remove("DARKNESS_TABLE")
+        .env("DARKNESS_CACHE", "tables");
     command.args(["-c", &line]).output().unwrap()
 }
 
