@@ -28,6 +28,8 @@ pub struct Needs {
     pub sensitivity: f64,
     /// The built-in tables, coarsest first.
     pub tables: Vec<Candidate>,
+    /// The frame whose needs these are; 1 for those of a scene.
+    pub frame: u32,
 }
 
 /// A built-in table, and whether it is accurate enough for a scene.
@@ -43,6 +45,9 @@ pub struct Candidate {
 }
 
 impl Needs {
+    /// The most frames of an animation that decide which table it needs.
+    pub const SAMPLED: u32 = 9;
+
     /// Computes what `scene` needs for a frame in some form.
     pub fn new(scene: &Scene, view: &View, form: Form) -> Self {
         let spec = CurveSpec::new(scene, view, scene.tolerance());
@@ -65,22 +70,24 @@ impl Needs {
             curve_spec: spec,
             sensitivity,
             tables: Spec::NAMES.into_iter().filter_map(candidate).collect(),
+            frame: 1,
         }
     }
 
-    /// Computes what an animation needs: the needs of the most sensitive of up to nine evenly spaced frames. They
+    /// Computes what an animation needs: the needs of the most sensitive of up to
+    /// [`Self::SAMPLED`] evenly spaced frames. They
     /// depend on the animation alone, so that one table serves all its frames.
     ///
     /// # Errors
     /// Returns the error of the first of these frames if none of them can be built.
     pub fn of_animation(animation: &Animation, form: Form) -> Result<Self, SceneError> {
-        const SAMPLED: u64 = 9;
         let last = u64::from(animation.frames());
         let mut most: Option<Self> = None;
         let mut before = 0;
         let mut refused = None;
-        for place in 0..SAMPLED {
-            let number = (1 + (last - 1) * place / (SAMPLED - 1)) as u32;
+        let sampled = u64::from(Self::SAMPLED);
+        for place in 0..sampled {
+            let number = (1 + (last - 1) * place / (sampled - 1)) as u32;
             if number == before {
                 continue;
             }
@@ -93,7 +100,10 @@ impl Needs {
                     continue;
                 }
             };
-            let needs = Self::new(&scene, &View::new(&scene), form);
+            let needs = Self {
+                frame: number,
+                ..Self::new(&scene, &View::new(&scene), form)
+            };
             if most
                 .as_ref()
                 .is_none_or(|most| needs.sensitivity > most.sensitivity)

@@ -263,10 +263,6 @@ fn misuse_is_reported_before_anything_is_done() {
     misused(&["small.toml", "--frames", "21-4294967295"], &["1 to 20"]);
     misused(&["classic", "--frames", "2"], &["no frame 2"]);
     misused(
-        &["small.toml", "--explain", "--frames", "2-3"],
-        &["--explain", "one frame"],
-    );
-    misused(
         &["small.toml", "--require-table", "--method", "exact"],
         &["--require-table"],
     );

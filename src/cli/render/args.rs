@@ -89,7 +89,8 @@ pub(in crate::cli) struct RenderArgs {
     /// Print the time of each part of the work: reading the sky, curves, render, encode, write
     #[arg(long, conflicts_with_all = ["explain", "dry_run"])]
     pub(super) timings: bool,
-    /// Print what the picture needs and what it does not, and draw nothing
+    /// Print what the picture needs and what it does not, and draw nothing. Of several frames: each figure's range, and
+    /// the frame that decides
     #[arg(long, conflicts_with = "output")]
     pub(super) explain: bool,
     /// Fail where the table is missing, instead of making it: for one of many workers

@@ -8,6 +8,7 @@ mod draw;
 mod explain;
 mod exr;
 mod ffmpeg;
+mod figures;
 mod film;
 mod form;
 mod format;

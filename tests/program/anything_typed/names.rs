@@ -162,7 +162,7 @@ fn names_may_lead_upwards_and_have_any_bytes() {
         ],
         vec![render, OsStr::new("--frames"), name(b"1-\xff")],
         vec![render, name(b"\xff")],
-        vec![render, table, name(b"\xff")],
+        vec![render, OsStr::new("--require-table"), table, name(b"\xff")],
         vec![render, OsStr::new("--size"), name(b"9x\xff")],
         vec![OsStr::new("scene"), name(b"\xff")],
         vec![name(b"\xff")],

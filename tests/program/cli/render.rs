@@ -63,6 +63,64 @@ fn the_map_is_told_of_where_the_output_needs_it() {
     assert_eq!(listing(here), ["a.table"]);
 }
 
+/// `--explain` of an animation tells of each figure its range and the frame in which it is greatest, and of the table
+/// that all frames are drawn with.
+#[test]
+fn all_frames_that_are_asked_for_are_explained() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    // For its first frame alone the draft table would do.
+    let approach = ["render", "approach", "--size", SMALL, "--tolerance", "1e-4"];
+    let explain = |frames: &str| {
+        let options = ["--explain", "--frames", frames];
+        printed(here, &[&approach[..], &options].concat())
+    };
+    let explained = explain("1-96");
+    for words in [
+        "for the table, 5.0e-5 for the curves\n",
+        "\nframes      1-96; each figure's range",
+        "one table for all frames: of 9 of them edges move most in frame ",
+    ] {
+        assert!(explained.contains(words), "no {words:?} in:\n{explained}");
+    }
+    // The least and the greatest value of a figure, and its frame, are what single frames have.
+    let single: Vec<String> = (1..=96)
+        .map(|number| explain(&number.to_string()))
+        .collect();
+    for (label, words) in [
+        ("edges ", "at most "),
+        ("orders ", "0: at most "),
+        ("edge error ", "at most "),
+    ] {
+        let after = |text: &str| {
+            let line = text.lines().find(|line| line.starts_with(label)).unwrap();
+            line.split_once(words).unwrap().1.to_owned()
+        };
+        let range = after(&explained);
+        let (least, rest) = range.split_once(" to ").unwrap();
+        let (most, rest) = rest.split_once(" (frame ").unwrap();
+        let frame: usize = rest.split_once(')').unwrap().0.parse().unwrap();
+        let value = |text: &str| -> f64 { after(text).split(' ').next().unwrap().parse().unwrap() };
+        let [least, most] = [least, most].map(|figure| figure.parse::<f64>().unwrap());
+        let values: Vec<f64> = single.iter().map(|text| value(text)).collect();
+        assert_eq!(
+            values.iter().copied().fold(f64::INFINITY, f64::min),
+            least,
+            "{label}"
+        );
+        assert_eq!(values.iter().copied().fold(0.0, f64::max), most, "{label}");
+        assert_eq!(values[frame - 1], most, "{label}");
+    }
+    let one = explain("1");
+    assert!(
+        one.contains("\ntable       standard (tables/standard.table)"),
+        "{one}"
+    );
+    let options = ["--frames", "1", "-o", "f_#.png"];
+    let (_, stderr) = done(here, &[&approach[..], &options].concat());
+    assert!(stderr.contains("table standard ("), "{stderr}");
+}
+
 /// The picture decides the table: the draft table for a small picture, none if even the fine table is too coarse.
 /// `--explain` says which and why, and draws nothing.
 #[test]
@@ -83,6 +141,7 @@ fn a_picture_takes_the_smallest_table_that_is_good_enough() {
         let explained = printed(here, &explain);
         for words in [
             "96 × 54, edges to be right to ",
+            " for the table, ",
             &format!("{name} (tables/{name}.table), error "),
             "orders      0: ",
             "and up are left out",
