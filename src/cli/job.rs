@@ -59,7 +59,8 @@ pub(super) fn run(args: &JobArgs, report: Report) -> anyhow::Result<()> {
         )));
     }
     let frames = animation.frames();
-    for number in (1..=frames).step_by(frames.div_ceil(LOOKED_AT) as usize) {
+    let (first, last) = (animation.first(), animation.last());
+    for number in (first..=last).step_by(frames.div_ceil(LOOKED_AT) as usize) {
         animation.check(number)?;
     }
     let (output, form) = render::sequence(&args.scene, &animation, args.output.as_deref())?;
@@ -112,6 +113,8 @@ pub(super) fn run(args: &JobArgs, report: Report) -> anyhow::Result<()> {
     };
     pieces.extend([
         ("FRAMES", frames.to_string()),
+        ("FIRST", first.to_string()),
+        ("LAST", last.to_string()),
         ("CHUNK", args.chunk.to_string()),
         ("TABLE_NAME", table_name.to_owned()),
         ("NAME", name(&args.scene)),

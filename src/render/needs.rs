@@ -29,7 +29,7 @@ pub struct Needs {
     /// The built-in tables, coarsest first.
     pub tables: Vec<Candidate>,
     /// The frame whose needs these are; 1 for those of a scene.
-    pub frame: u32,
+    pub frame: i64,
 }
 
 /// A built-in table, and whether it is accurate enough for a scene.
@@ -81,17 +81,17 @@ impl Needs {
     /// # Errors
     /// Returns the error of the first of these frames if none of them can be built.
     pub fn of_animation(animation: &Animation, form: Form) -> Result<Self, SceneError> {
-        let last = u64::from(animation.frames());
+        let (first, span) = (animation.first(), i64::from(animation.frames()) - 1);
         let mut most: Option<Self> = None;
-        let mut before = 0;
+        let mut before = None;
         let mut refused = None;
-        let sampled = u64::from(Self::SAMPLED);
+        let sampled = i64::from(Self::SAMPLED);
         for place in 0..sampled {
-            let number = (1 + (last - 1) * place / (sampled - 1)) as u32;
-            if number == before {
+            let number = first + span * place / (sampled - 1);
+            if before == Some(number) {
                 continue;
             }
-            before = number;
+            before = Some(number);
             // Skips invalid frames. They are reported where they are drawn.
             let scene = match animation.frame(number) {
                 Ok(scene) => scene,
@@ -112,8 +112,9 @@ impl Needs {
             }
         }
         let none = SceneError::NoFrame {
-            number: 1,
-            frames: animation.frames(),
+            number: first,
+            first,
+            last: animation.last(),
         };
         most.ok_or(refused.unwrap_or(none))
     }

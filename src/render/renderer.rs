@@ -249,7 +249,7 @@ impl<A: SweptAngles> Renderer<A> {
         &self,
         animation: &Animation,
         form: Form,
-        numbers: impl ExactSizeIterator<Item = u32> + Send,
+        numbers: impl Iterator<Item = i64> + Clone + Send,
         done: impl Fn(DrawnFrame<'_>) -> Result<(), E> + Sync,
     ) -> Result<(), E> {
         let frames = Curved::new(animation, &self.angles);
@@ -258,7 +258,7 @@ impl<A: SweptAngles> Renderer<A> {
             Some(source) if sky.as_ref() == animation.sky() => frames.with_sky(source),
             _ => frames,
         };
-        let sharing = Sharing::fastest(numbers.len() as u64, u64::MAX);
+        let sharing = Sharing::fastest(numbers.clone().count() as u64, u64::MAX);
         batch::draw(&frames, form, numbers, sharing, |_| true, done)
     }
 }

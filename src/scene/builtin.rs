@@ -98,7 +98,7 @@ mod tests {
                 Animation::from_toml(&animation.to_toml()).unwrap(),
                 animation
             );
-            for number in 1..=animation.frames() {
+            for number in 1..=animation.last() {
                 animation.check(number).unwrap();
             }
             assert!(builtin.toml().starts_with("# "), "{}", builtin.name());
@@ -191,7 +191,7 @@ mod tests {
     fn the_flyby_passes_above_the_disk_and_the_hole_drifts_through_the_picture() {
         let film = Animation::load("flyby").unwrap();
         let mut before = f64::NEG_INFINITY;
-        for number in 1..=film.frames() {
+        for number in 1..=film.last() {
             let scene = film.check(number).unwrap();
             assert!((25.0..38.0).contains(&scene.radius()) && scene.camera().position.z > 7.0);
             let camera = scene.camera();
@@ -212,7 +212,7 @@ mod tests {
     fn the_plunge_ends_above_the_photon_sphere_with_the_hole_in_view() {
         let plunge = Animation::load("plunge").unwrap();
         let mut before = f64::INFINITY;
-        for number in 1..=plunge.frames() {
+        for number in 1..=plunge.last() {
             let scene = plunge.check(number).unwrap();
             assert!(scene.radius() <= before && scene.radius() > 1.5);
             before = scene.radius();

@@ -39,17 +39,19 @@ pub enum SceneError {
     #[error("frame {number}: {error}")]
     InFrame {
         /// The frame's number.
-        number: u32,
+        number: i64,
         /// What is wrong.
         error: Box<SceneError>,
     },
     /// The animation has no such frame.
-    #[error("there is no frame {number}: the frames are 1 to {frames}")]
+    #[error("there is no frame {number}: the frames are {first} to {last}")]
     NoFrame {
         /// The number asked for.
-        number: u32,
-        /// The number of frames.
-        frames: u32,
+        number: i64,
+        /// The first frame's number.
+        first: i64,
+        /// The last frame's number.
+        last: i64,
     },
     /// No built-in scene and no file has this name.
     #[error(
@@ -115,7 +117,7 @@ impl SceneError {
     }
 
     /// The same error, of the frame `number`.
-    pub(super) fn in_frame(self, number: u32) -> Self {
+    pub(super) fn in_frame(self, number: i64) -> Self {
         Self::InFrame {
             number,
             error: Box::new(self),

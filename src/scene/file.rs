@@ -116,6 +116,8 @@ pub(super) enum Interpolation {
 #[serde(deny_unknown_fields)]
 pub(super) struct AnimationTable {
     pub(super) frames: i64,
+    #[serde(default = "one")]
+    pub(super) first: i64,
     #[serde(default = "of_film")]
     pub(super) fps: f64,
     #[serde(default)]
@@ -230,6 +232,10 @@ fn default_width() -> i64 {
 
 fn default_height() -> i64 {
     1080
+}
+
+fn one() -> i64 {
+    1
 }
 
 fn of_film() -> f64 {

@@ -22,7 +22,7 @@ impl Scene {
     /// [`SceneError::Toml`] with line and column where the text is not TOML, or a key is missing, unknown or of the
     /// wrong type; [`SceneError::Value`] for a value that is not allowed.
     pub fn from_toml(text: &str) -> Result<Self, SceneError> {
-        Animation::from_toml(text)?.frame(1)
+        Animation::from_toml(text)?.first_frame()
     }
 
     /// The built-in scene of this name; [`builtins`](super::builtins) lists them.
@@ -45,7 +45,7 @@ impl Scene {
     /// [`SceneError::InFile`] for a file that holds no valid scene.
     pub fn load(path_or_name: impl AsRef<Path>) -> Result<Self, SceneError> {
         load(path_or_name.as_ref(), &[], |file| {
-            Animation::new(file)?.frame(1)
+            Animation::new(file)?.first_frame()
         })
     }
 

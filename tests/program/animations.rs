@@ -258,7 +258,10 @@ fn misuse_is_reported_before_anything_is_done() {
         &["small.toml", "--frames", "5-1"],
         &["5-1", "before it begins"],
     );
-    misused(&["small.toml", "--frames", "0-4"], &["0-4", "from 1"]);
+    misused(
+        &["small.toml", "--frames", "-3-0"],
+        &["no frame 0", "1 to 20"],
+    );
     misused(&["small.toml", "--frames", "1..4"], &["1..4", "1-240"]);
     misused(&["small.toml", "--frames", "21-4294967295"], &["1 to 20"]);
     misused(&["classic", "--frames", "2"], &["no frame 2"]);
@@ -540,5 +543,83 @@ fn progress_is_reported_in_the_form_that_is_asked_for() {
     let timings = stderr(&["--timings"]);
     for part in ["curves", "render", "encode", "write", "frames/s"] {
         assert!(timings.contains(part), "{timings}");
+    }
+}
+
+#[test]
+fn frames_are_numbered_from_where_the_animation_says() {
+    let folder = with_animation(8);
+    let here = folder.path();
+    let toml = fs::read_to_string(here.join("small.toml")).unwrap();
+    for (first, names) in [
+        (1001, ["f_1001.png", "f_1004.png", "f_1008.png"]),
+        (-4, ["f_-004.png", "f_-001.png", "f_0003.png"]),
+    ] {
+        let shifted = toml.replace("frames = 8", &format!("frames = 8\nfirst = {first}"));
+        fs::write(here.join("shifted.toml"), shifted).unwrap();
+        let render = ["render", "shifted.toml", "-o", PATTERN];
+        let some = format!("{}-{}", first, first + 3);
+        let (_, stderr) = done(here, &[&render[..], &["--frames", &some]].concat());
+        assert!(stderr.contains("4 frames"), "{stderr}");
+        // The same command draws the rest.
+        let (_, stderr) = done(here, &render);
+        assert!(stderr.contains("4 were finished before"), "{stderr}");
+        let all = files(&here.join("out"));
+        assert_eq!(all.len(), 8);
+        assert!(
+            names.iter().all(|name| all.contains_key(*name)),
+            "{:?}",
+            all.keys()
+        );
+        let listed = printed(here, &[&render[..], &["--dry-run"]].concat());
+        assert!(
+            listed.starts_with(&format!("{first}\tfinished\tout/{}\n", names[0])),
+            "{listed}"
+        );
+        // They show what the frames show that are numbered from 1.
+        done(here, &["render", "small.toml", "-o", "one/f_####.png"]);
+        let pixels = |path: &str| image::open(here.join(path)).unwrap().into_luma8();
+        assert!(pixels(&format!("out/{}", names[0])) == pixels("one/f_0001.png"));
+        assert!(pixels(&format!("out/{}", names[2])) == pixels("one/f_0008.png"));
+        let wrong = format!("{}", first - 1);
+        let words = [&*wrong, "the frames are", &first.to_string()];
+        refused(
+            here,
+            &[&render[..], &["--frames", &wrong]].concat(),
+            2,
+            &words,
+        );
+
+        fs::remove_dir_all(here.join("out")).unwrap();
+        let job = printed(
+            here,
+            &[
+                "job",
+                "slurm",
+                "shifted.toml",
+                "--chunk",
+                "5",
+                "-o",
+                PATTERN,
+            ],
+        );
+        let program = Path::new(env!("CARGO_BIN_EXE_darkness")).parent().unwrap();
+        for task in ["0", "1"] {
+            let path = format!("{}:/usr/bin:/bin", program.display());
+            let mut command = Command::new("bash");
+            let command = command
+                .args(["-c", &job])
+                .env("PATH", path)
+                .current_dir(here);
+            let output = command.env("SLURM_ARRAY_TASK_ID", task).output().unwrap();
+            assert!(output.status.success(), "{output:?}");
+        }
+        assert!(files(&here.join("out")) == all);
+        let job = printed(here, &["job", "openjd", "shifted.toml"]);
+        assert!(
+            job.contains(&format!("default: \"{first}-{}\"", first + 7)),
+            "{job}"
+        );
+        fs::remove_dir_all(here.join("out")).unwrap();
     }
 }

@@ -25,7 +25,8 @@ SCENE=@SCENE@@SKY@
 TABLE=@TABLE@
 OUT=@OUT@
 # SLURM_ARRAY_TASK_MAX is the array's last index, not the last frame.
-LAST=@FRAMES@
+FIRST=@FIRST@
+LAST=@LAST@
 CHUNK=@CHUNK@
 
 # With `exec`, Slurm's SIGTERM (60 s before the time limit, and on scancel) reaches darkness, which finishes the frames
@@ -33,8 +34,8 @@ CHUNK=@CHUNK@
 if [ "${1-}" = table ]; then
   exec darkness table @TABLE_NAME@ -o "$TABLE"
 fi
-FIRST_OF_TASK=$((1 + SLURM_ARRAY_TASK_ID * CHUNK))
+FIRST_OF_TASK=$((FIRST + SLURM_ARRAY_TASK_ID * CHUNK))
 LAST_OF_TASK=$((FIRST_OF_TASK + CHUNK - 1))
 if [ "$LAST_OF_TASK" -gt "$LAST" ]; then LAST_OF_TASK=$LAST; fi
-exec darkness render "$SCENE" --frames "$FIRST_OF_TASK-$LAST_OF_TASK" --table "$TABLE" --require-table \
+exec darkness render "$SCENE" --frames="$FIRST_OF_TASK-$LAST_OF_TASK" --table "$TABLE" --require-table \
   --threads "${SLURM_CPUS_PER_TASK:-1}" -o "$OUT"

@@ -53,8 +53,9 @@ pub(in crate::cli) struct RenderArgs {
     /// The format, where the extension does not name it
     #[arg(long, value_name = "FORMAT", value_enum)]
     pub(super) format: Option<Format>,
-    /// The frames of an animation: 12, 1-240, every tenth as 1-240x10 or 1-240:10, several with commas [default: all]
-    #[arg(long, value_name = "RANGE")]
+    /// The frames of an animation, by their own numbers: 12, 1-240, every tenth as 1-240x10 or 1-240:10, negative ones
+    /// as -9--1, several with commas [default: all]
+    #[arg(long, value_name = "RANGE", allow_hyphen_values = true)]
     pub(super) frames: Option<FrameRange>,
     /// Draw finished frames again, and replace files that other programs made
     #[arg(long)]

@@ -47,10 +47,10 @@ impl FrameSource<'_> {
     /// The first error of `done`; no frame is begun after it.
     pub(super) fn draw_all<E: Send>(
         &self,
-        numbers: impl Iterator<Item = u32> + Send,
+        numbers: impl Iterator<Item = i64> + Send,
         count: u64,
         at_a_time: u64,
-        wanted: impl Fn(u32) -> bool + Sync,
+        wanted: impl Fn(i64) -> bool + Sync,
         done: impl Fn(DrawnFrame<'_>) -> Result<(), E> + Sync,
     ) -> Result<(), E> {
         let sharing = Sharing::fastest(count, at_a_time);

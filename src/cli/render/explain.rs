@@ -69,15 +69,15 @@ pub(super) fn run(
 }
 
 /// The frames that are looked at: all, or evenly spaced ones.
-fn looked_at(frames: &FrameRange) -> Vec<u32> {
-    let all: Vec<u32> = frames.iter().take(MOST_FRAMES + 1).collect();
+fn looked_at(frames: &FrameRange) -> Vec<i64> {
+    let all: Vec<i64> = frames.iter().take(MOST_FRAMES + 1).collect();
     if all.len() <= MOST_FRAMES {
         return all;
     }
-    let (first, span) = (all[0], u64::from(frames.last() - all[0]));
-    let number = |place| first + (span * place as u64 / (MOST_FRAMES - 1) as u64) as u32;
+    let (first, span) = (all[0], frames.last() - all[0]);
+    let number = |place| first + span * place as i64 / (MOST_FRAMES - 1) as i64;
     let numbers = (0..MOST_FRAMES).filter_map(|place| frames.above(number(place) - 1));
-    let mut numbers: Vec<u32> = numbers.collect();
+    let mut numbers: Vec<i64> = numbers.collect();
     numbers.dedup();
     numbers
 }
@@ -93,7 +93,7 @@ fn picture(scene: &Scene) -> String {
 }
 
 /// Which frames the figures are of.
-fn frame_line(frames: &FrameRange, looked_at: &[u32]) -> String {
+fn frame_line(frames: &FrameRange, looked_at: &[i64]) -> String {
     let which = match looked_at {
         [only] => return format!("{only}"),
         _ if frames.iter().nth(MOST_FRAMES).is_none() => format!("{frames}"),

@@ -15,7 +15,7 @@ struct Span {
     least: f64,
     most: f64,
     /// The first frame in which it is greatest.
-    frame: u32,
+    frame: i64,
     /// In how many frames there is one.
     count: usize,
 }
@@ -33,7 +33,7 @@ impl Default for Span {
 
 impl Span {
     /// Takes the figure of one more frame.
-    fn add(&mut self, frame: u32, value: f64) {
+    fn add(&mut self, frame: i64, value: f64) {
         self.count += 1;
         self.least = self.least.min(value);
         if value > self.most {
@@ -82,7 +82,7 @@ pub(super) struct Figures {
 
 impl Figures {
     /// Takes the figures of one more frame.
-    pub(super) fn add(&mut self, frame: u32, scene: &Scene, form: Form, method: &Method) {
+    pub(super) fn add(&mut self, frame: i64, scene: &Scene, form: Form, method: &Method) {
         let view = View::new(scene);
         let needs = Needs::new(scene, &view, form);
         let curves = draw::curves(&needs, method);
@@ -186,7 +186,7 @@ impl Figures {
 }
 
 /// Takes the figures of one more frame.
-fn add<const N: usize>(spans: &mut [Span; N], frame: u32, figures: [f64; N]) {
+fn add<const N: usize>(spans: &mut [Span; N], frame: i64, figures: [f64; N]) {
     for (span, figure) in spans.iter_mut().zip(figures) {
         span.add(frame, figure);
     }

@@ -91,7 +91,7 @@ fn with_hint(args: &RenderArgs, error: SceneError) -> anyhow::Error {
 
 /// All frames of the animation.
 pub(super) fn all_frames(animation: &Animation) -> FrameRange {
-    FrameRange::up_to(animation.frames())
+    FrameRange::all(animation.first(), animation.last())
 }
 
 /// The frames that are asked for and that the animation has. Prints which others are asked for.
@@ -103,13 +103,17 @@ pub(super) fn frames(args: &RenderArgs, animation: &Animation) -> anyhow::Result
     let Some(asked) = &args.frames else {
         return Ok(all);
     };
-    let frames = animation.frames();
-    let Some(range) = asked.up_to_frame(frames) else {
+    let (first, last) = (animation.first(), animation.last());
+    let Some(range) = asked.within(first, last) else {
         let number = asked.last();
-        let error = SceneError::NoFrame { number, frames };
+        let error = SceneError::NoFrame {
+            number,
+            first,
+            last,
+        };
         return Err(misuse(format!("--frames {asked}: {error}")));
     };
-    if asked.last() > frames {
+    if asked.last() > last || asked.first() < Some(first) {
         warn(format_args!(
             "--frames {asked}: the animation's frames are {all}; those beyond are left out"
         ));

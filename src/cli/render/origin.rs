@@ -10,7 +10,7 @@ pub(super) struct FrameOrigin {
     /// The SHA-256 of each of the sky's files, where the frame shows any.
     pub(super) sky: Option<String>,
     /// The frame's number.
-    pub(super) frame: u32,
+    pub(super) frame: i64,
 }
 
 /// The key of the program's name and version.
@@ -27,7 +27,7 @@ pub(super) const ANY_VERSION: &str = "darkness ";
 
 impl FrameOrigin {
     /// The origin of another frame of the same animation.
-    pub(super) fn of_frame(&self, frame: u32) -> Self {
+    pub(super) fn of_frame(&self, frame: i64) -> Self {
         Self {
             frame,
             ..self.clone()
@@ -52,7 +52,7 @@ pub(super) mod tests {
     use super::*;
 
     /// The origin of a frame.
-    pub(in super::super) fn origin(frame: u32) -> FrameOrigin {
+    pub(in super::super) fn origin(frame: i64) -> FrameOrigin {
         FrameOrigin {
             scene: "5c".repeat(32),
             table: "none".into(),

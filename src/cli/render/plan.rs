@@ -138,7 +138,7 @@ impl<'a> Plan<'a> {
     }
 
     /// Whether a frame of a sequence is there already, and is to be kept.
-    pub(super) fn is_finished(&self, number: u32, origin: &FrameOrigin) -> bool {
+    pub(super) fn is_finished(&self, number: i64, origin: &FrameOrigin) -> bool {
         match &self.destination {
             Destination::Sequence(pattern) if !self.args.overwrite => {
                 let origin = origin.of_frame(number);

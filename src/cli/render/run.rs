@@ -126,7 +126,7 @@ fn prepare(
         foreign,
         left_over,
     } = sequence::survey(pattern, plan.frames, &all, plan.is_ours());
-    let files = |numbers: Vec<u32>| numbers.into_iter().map(|number| pattern.file(number));
+    let files = |numbers: Vec<i64>| numbers.into_iter().map(|number| pattern.file(number));
     if !foreign.is_empty() && !plan.args.overwrite {
         return Err(sequence::foreign(files(foreign)));
     }
@@ -177,7 +177,7 @@ impl Run<'_> {
     /// Draws the frames that are `wanted`, until the run is interrupted.
     fn draw<E: Send>(
         &self,
-        wanted: impl Fn(u32) -> bool + Sync,
+        wanted: impl Fn(i64) -> bool + Sync,
         done: impl Fn(DrawnFrame<'_>) -> Result<(), E> + Sync,
     ) -> Result<(), E> {
         let plan = self.plan;
@@ -226,7 +226,7 @@ impl Run<'_> {
     fn encode_and_write(
         &self,
         DrawnFrame { number, pixels, .. }: DrawnFrame<'_>,
-        write: impl Fn(u32, &[u8]) -> anyhow::Result<()>,
+        write: impl Fn(i64, &[u8]) -> anyhow::Result<()>,
     ) -> anyhow::Result<()> {
         let (pixels, effort) = pixels?;
         let start = Instant::now();
@@ -264,7 +264,7 @@ impl Run<'_> {
         film.finish()
     }
 
-    fn done(&self, number: u32, effort: FrameReport, encoding: Duration, writing: Duration) {
+    fn done(&self, number: i64, effort: FrameReport, encoding: Duration, writing: Duration) {
         self.stats.drawn(number, effort, encoding, writing);
         self.progress.done();
     }

@@ -23,18 +23,18 @@ pub(super) struct Counts {
     /// Frames whose curves were not accurate enough.
     pub(super) ray_by_ray: u64,
     /// The frame with the largest error of an edge, the first of equals.
-    pub(super) worst: Option<(u32, FrameReport)>,
+    pub(super) worst: Option<(i64, FrameReport)>,
     /// Times summed over all threads: for curves, pixels, encoding and writing.
     pub(super) times: [Duration; 4],
     /// The numbers of the frames that failed, by what is wrong with their files.
-    failures: BTreeMap<String, Vec<u32>>,
+    failures: BTreeMap<String, Vec<i64>>,
 }
 
 impl RunStats {
     /// Counts a frame that was drawn, encoded and written.
     pub(super) fn drawn(
         &self,
-        number: u32,
+        number: i64,
         effort: FrameReport,
         encoding: Duration,
         writing: Duration,
@@ -61,7 +61,7 @@ impl RunStats {
     }
 
     /// Counts a frame that could not be drawn or written.
-    pub(super) fn failed(&self, number: u32, reason: &impl ToString) {
+    pub(super) fn failed(&self, number: i64, reason: &impl ToString) {
         let mut counts = self.counts();
         let numbers = counts.failures.entry(reason.to_string()).or_default();
         numbers.push(number);
@@ -98,7 +98,7 @@ impl Counts {
 }
 
 /// Formats rising numbers as an argument of `--frames`: `3-5,9`.
-fn ranges(numbers: &[u32]) -> String {
+fn ranges(numbers: &[i64]) -> String {
     let runs = numbers.chunk_by(|a, b| a + 1 == *b);
     let text: Vec<String> = runs
         .map(|run| match run {

@@ -44,9 +44,9 @@ pub(super) struct Survey {
     /// How many of the frames that are asked for have a file.
     pub(super) present: u64,
     /// The numbers of those whose file another program made.
-    pub(super) foreign: Vec<u32>,
+    pub(super) foreign: Vec<i64>,
     /// The numbers of frames that this program made, and that the animation no longer has.
-    pub(super) left_over: Vec<u32>,
+    pub(super) left_over: Vec<i64>,
 }
 
 /// Lists the folder once, and removes what killed processes left of the frames that are `asked` for. `all` are the

@@ -49,7 +49,7 @@ impl<'a, A: SweptAngles> Curved<'a, A> {
     }
 
     /// Returns the block that a frame is in.
-    fn block(&self, number: u32) -> Arc<Block> {
+    fn block(&self, number: i64) -> Arc<Block> {
         let mut kept = locked(&self.block);
         match &*kept {
             Some(block) if block.has(number) => Arc::clone(block),
@@ -64,7 +64,7 @@ impl<'a, A: SweptAngles> Curved<'a, A> {
 impl<A: SweptAngles> Frames for Curved<'_, A> {
     fn draw(
         &self,
-        number: u32,
+        number: i64,
         on_all_threads: bool,
         workspace: &mut Workspace,
         memory: &mut FrameMemory,

@@ -47,7 +47,7 @@ impl<'a, O: Orbits> RayByRay<'a, O> {
 impl<O: Orbits> Frames for RayByRay<'_, O> {
     fn draw(
         &self,
-        number: u32,
+        number: i64,
         _: bool,
         _: &mut Workspace,
         memory: &mut FrameMemory,

@@ -2,7 +2,8 @@
 //!
 //! ```toml
 //! [animation]
-//! frames = 240                            # required; they are numbered from 1
+//! frames = 240                            # required
+//! first = 1                               # default; the first frame's number, which may be 0 or negative
 //! fps = 24                                # default; frames a second, for films
 //! interpolation = "smooth"                # default; or "linear"
 //! # Each of the three a number or [from, to]; degrees, the inclination from +z.
@@ -53,10 +54,14 @@ use track::Track;
 /// The most frames of an animation.
 pub const MAX_FRAMES: u32 = 100_000_000;
 
-/// A scene for each frame. Frames are numbered from 1; a still scene is an animation of one frame.
+/// The largest number of an animation's first frame; the smallest is its opposite.
+pub const MAX_FIRST: i64 = 1_000_000_000;
+
+/// A scene for each frame. Frames are numbered from [`Self::first`] on; a still scene is an animation of one frame, 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Animation {
     file: SceneFile,
+    first: i64,
     frames: u32,
     rate: Rate,
     position: Position,
@@ -103,17 +108,21 @@ impl Animation {
         let settings = file.settings()?;
         let has_angles = file.camera.normalise(settings.size)?;
         let table = file.animation.take();
-        let (frames, rate) = match &table {
-            Some(table) => (frames(table.frames)?, Rate::new(table.fps)?),
-            None => (1, Rate::default()),
+        let (first, frames, rate) = match &table {
+            Some(table) => {
+                let frames = frames(table.frames)?;
+                (first(table.first)?, frames, Rate::new(table.fps)?)
+            }
+            None => (1, 1, Rate::default()),
         };
+        let last = first + i64::from(frames) - 1;
         let interpolation = table
             .as_ref()
             .map_or(Interpolation::Linear, |table| table.interpolation);
         let keyframes: &[KeyframeTable] = table.as_ref().map_or(&[], |table| &table.keyframe);
-        check_order(keyframes, frames)?;
+        check_order(keyframes, first, last)?;
         let orbit = table.as_ref().and_then(|table| table.orbit.as_ref());
-        let orbit = orbit.map(|orbit| OrbitPath::new(orbit, frames, interpolation));
+        let orbit = orbit.map(|orbit| OrbitPath::new(orbit, first, last, interpolation));
 
         let keys = Keyframes {
             keyframes,
@@ -183,6 +192,7 @@ impl Animation {
             None => None,
         };
         let animation = Self {
+            first,
             frames,
             rate,
             position,
@@ -200,7 +210,7 @@ impl Animation {
             validate::edges(disk.inner, disk.outer)?;
         }
         if animation.is_still() {
-            animation.frame(1)?;
+            animation.first_frame()?;
         }
         Ok(animation)
     }
@@ -208,6 +218,24 @@ impl Animation {
     /// The number of frames.
     pub fn frames(&self) -> u32 {
         self.frames
+    }
+
+    /// The first frame's number.
+    pub fn first(&self) -> i64 {
+        self.first
+    }
+
+    /// The last frame's number.
+    pub fn last(&self) -> i64 {
+        self.first + i64::from(self.frames) - 1
+    }
+
+    /// The scene of the first frame.
+    ///
+    /// # Errors
+    /// Those of [`Self::frame`].
+    pub fn first_frame(&self) -> Result<Scene, SceneError> {
+        self.frame(self.first)
     }
 
     /// The frame rate.
@@ -241,16 +269,18 @@ impl Animation {
     /// The scene of frame `number`.
     ///
     /// # Errors
-    /// [`SceneError::NoFrame`] for a number outside 1 to [`Self::frames`]; [`SceneError::InFrame`] for a camera that
+    /// [`SceneError::NoFrame`] for a number outside [`Self::first`] to [`Self::last`]; [`SceneError::InFrame`] for a camera that
     /// is inside the horizon or the disk, or that looks nowhere.
-    pub fn frame(&self, number: u32) -> Result<Scene, SceneError> {
-        if !(1..=self.frames).contains(&number) {
+    pub fn frame(&self, number: i64) -> Result<Scene, SceneError> {
+        let (first, last) = (self.first, self.last());
+        if !(first..=last).contains(&number) {
             return Err(SceneError::NoFrame {
                 number,
-                frames: self.frames,
+                first,
+                last,
             });
         }
-        let time = f64::from(number);
+        let time = number as f64;
         let CameraPlace {
             position,
             radius,
@@ -279,15 +309,15 @@ impl Animation {
     ///
     /// # Errors
     /// Those of [`Self::frame`], and [`SceneError::InFrame`] for a camera that passes through the disk.
-    pub fn check(&self, number: u32) -> Result<Scene, SceneError> {
+    pub fn check(&self, number: i64) -> Result<Scene, SceneError> {
         let scene = self.frame(number)?;
         let Some(disk) = &self.disk else {
             return Ok(scene);
         };
-        let (mut before, mut after) = (f64::from(number), f64::from(number) + 1.0);
+        let (mut before, mut after) = (number as f64, number as f64 + 1.0);
         let side = |time| cosine(self.position.at(time).position, disk.normal.at(time));
         let first = side(before);
-        if number == self.frames || first * side(after) >= 0.0 {
+        if number == self.last() || first * side(after) >= 0.0 {
             return Ok(scene);
         }
         for _ in 0..50 {
@@ -330,24 +360,32 @@ fn frames(frames: i64) -> Result<u32, SceneError> {
         })
 }
 
+/// Checks the number of the first frame.
+fn first(first: i64) -> Result<i64, SceneError> {
+    let reason = format!("the first frame's number is -{MAX_FIRST} to {MAX_FIRST}");
+    let is_allowed = (-MAX_FIRST..=MAX_FIRST).contains(&first);
+    SceneError::check(is_allowed, "animation.first", first, reason)?;
+    Ok(first)
+}
+
 /// Checks that keyframes are in order and within the animation, and that each sets something.
-fn check_order(keyframes: &[KeyframeTable], frames: u32) -> Result<(), SceneError> {
-    let mut before = 0;
+fn check_order(keyframes: &[KeyframeTable], first: i64, last: i64) -> Result<(), SceneError> {
+    let mut before = None;
     for keyframe in keyframes {
         let number = keyframe.frame;
         let wrong = |reason| SceneError::value("animation.keyframe.frame", number, reason);
-        if number < 1 || number > i64::from(frames) {
-            return Err(wrong(format!("the animation has frames 1 to {frames}")));
+        if !(first..=last).contains(&number) {
+            return Err(wrong(format!("the animation has frames {first} to {last}")));
         }
-        if number <= before {
+        if let Some(before) = before.filter(|&before| number <= before) {
             let reason = format!("it must be above frame {before}, the keyframe before it");
             return Err(wrong(reason));
         }
         if keyframe.is_empty() {
             let error = "the keyframe sets nothing; give it a position, focus, up, fov or normal";
-            return Err(SceneError::toml(error).in_frame(number as u32));
+            return Err(SceneError::toml(error).in_frame(number));
         }
-        before = number;
+        before = Some(number);
     }
     Ok(())
 }
@@ -372,8 +410,7 @@ impl Keyframes<'_> {
         named
             .map(|(number, value)| {
                 for component in value {
-                    validate::finite(key, component)
-                        .map_err(|error| error.in_frame(number as u32))?;
+                    validate::finite(key, component).map_err(|error| error.in_frame(number))?;
                 }
                 Ok((number as f64, value))
             })
@@ -398,7 +435,7 @@ impl Keyframes<'_> {
             let direction = validate::finite_direction(key, value);
             Ok((
                 time,
-                direction.map_err(|error| error.in_frame(time as u32))?,
+                direction.map_err(|error| error.in_frame(time as i64))?,
             ))
         });
         let named: Vec<_> = checked.collect::<Result<_, SceneError>>()?;

@@ -26,13 +26,14 @@ pub(super) struct OrbitPath {
 }
 
 impl OrbitPath {
-    /// The path that `table` describes, over `frames` frames.
+    /// The path that `table` describes, from the frame `first` to the frame `last`.
     ///
     /// # Errors
     /// [`SceneError::Value`] for a number that is not finite.
     pub(super) fn new(
         table: &OrbitTable,
-        frames: u32,
+        first: i64,
+        last: i64,
         interpolation: Interpolation,
     ) -> Result<Self, SceneError> {
         let spans = [
@@ -51,16 +52,16 @@ impl OrbitPath {
             && angles.iter().any(|angle| angle.from != angle.to);
         // A closed orbit returns to its start one frame after the last, and does not come to rest there.
         let (end, interpolation) = if is_closed {
-            (frames + 1, Interpolation::Linear)
+            (last + 1, Interpolation::Linear)
         } else {
-            (frames, interpolation)
+            (last, interpolation)
         };
-        let first = (1.0, spans.map(|(_, span)| span.from));
-        let last = (f64::from(end), spans.map(|(_, span)| span.to));
-        let keys = if end > 1 {
-            &[first, last][..]
+        let from = (first as f64, spans.map(|(_, span)| span.from));
+        let to = (end as f64, spans.map(|(_, span)| span.to));
+        let keys = if end > first {
+            &[from, to][..]
         } else {
-            &[first]
+            &[from]
         };
         Ok(Self {
             of_time: Track::new(keys, interpolation),

@@ -62,7 +62,7 @@ impl Position {
         for (&(time, _), &position) in keys.iter().zip(&given) {
             let radius = norm(position);
             validate::radius(KEY, position.to_array(), radius)
-                .map_err(|error| error.in_frame(time as u32))?;
+                .map_err(|error| error.in_frame(time as i64))?;
             let radius = match radii.last() {
                 Some(&(_, [before])) if (radius - before).abs() <= SAME_RADIUS * before => before,
                 _ => radius,

@@ -144,6 +144,10 @@ impl fmt::Display for AnimationTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "[animation]")?;
         writeln!(f, "frames = {}", self.frames)?;
+        // Left out at its default, as later keys of the picture are.
+        if self.first != 1 {
+            writeln!(f, "first = {}", self.first)?;
+        }
         writeln!(f, "fps = {:?}", self.fps)?;
         let interpolation = match self.interpolation {
             Interpolation::Smooth => "smooth",
