@@ -91,7 +91,7 @@ impl Pattern {
         let digits = name.strip_suffix(self.after.as_bytes())?;
         let digits = std::str::from_utf8(digits).ok()?;
         let number: i64 = digits.parse().ok()?;
-        let is_number = number.unsigned_abs() <= u64::from(u32::MAX);
+        let is_number = u32::try_from(number.unsigned_abs()).is_ok();
         (is_number && digits == self.written(number)).then_some(number)
     }
 }

@@ -123,6 +123,7 @@ impl Animation {
         check_order(keyframes, first, last)?;
         let orbit = table.as_ref().and_then(|table| table.orbit.as_ref());
         let orbit = orbit.map(|orbit| OrbitPath::new(orbit, first, last, interpolation));
+        let orbit = orbit.transpose()?;
 
         let keys = Keyframes {
             keyframes,
@@ -134,27 +135,7 @@ impl Animation {
                 "camera.radius, inclination and azimuth mean nothing where the animation moves the camera; remove them",
             ));
         }
-        let position = match (orbit, position.as_slice(), file.camera.position()) {
-            (Some(_), [_, ..], _) => {
-                return Err(SceneError::toml(
-                    "animation.orbit and keyframes both set the camera's position; remove one of them",
-                ));
-            }
-            (Some(_), [], Some(_)) => {
-                return Err(SceneError::toml(
-                    "camera.position means nothing beside animation.orbit, which moves the camera; remove one of them",
-                ));
-            }
-            (Some(orbit), [], None) => Position::Orbit(orbit?),
-            (None, [_, ..], _) => Position::new(&position, interpolation)?,
-            (None, [], Some(position)) => Position::still(position)?,
-            (None, [], None) => {
-                return Err(SceneError::toml(
-                    "camera.position is missing; give it, or camera.radius, inclination and azimuth. Only an animation \
-                     with an orbit or with positions in its keyframes can leave it out",
-                ));
-            }
-        };
+        let position = camera_path(orbit, &position, file.camera.position(), interpolation)?;
         let focus = keys.vectors("animation.keyframe.focus", |keyframe| keyframe.focus)?;
         let up = keys.directions("animation.keyframe.up", |keyframe| keyframe.up)?;
         if !matches!(position, Position::Orbit(_)) {
@@ -347,6 +328,31 @@ impl Animation {
     pub fn to_toml(&self) -> String {
         self.file.to_string()
     }
+}
+
+/// Chooses the camera's path: an orbit, through keyframes, or at one place.
+fn camera_path(
+    orbit: Option<OrbitPath>,
+    keyframes: &[(f64, [f64; 3])],
+    place: Option<[f64; 3]>,
+    interpolation: Interpolation,
+) -> Result<Position, SceneError> {
+    let problem = match (orbit, keyframes, place) {
+        (Some(orbit), [], None) => return Ok(Position::Orbit(orbit)),
+        (None, [_, ..], _) => return Position::new(keyframes, interpolation),
+        (None, [], Some(position)) => return Position::still(position),
+        (Some(_), [_, ..], _) => {
+            "animation.orbit and keyframes both set the camera's position; remove one of them"
+        }
+        (Some(_), [], Some(_)) => {
+            "camera.position means nothing beside animation.orbit, which moves the camera; remove one of them"
+        }
+        (None, [], None) => {
+            "camera.position is missing; give it, or camera.radius, inclination and azimuth. Only an animation with \
+             an orbit or with positions in its keyframes can leave it out"
+        }
+    };
+    Err(SceneError::toml(problem))
 }
 
 /// Checks the number of frames.
