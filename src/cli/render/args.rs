@@ -70,7 +70,7 @@ pub(in crate::cli) struct RenderArgs {
     /// The bits of a PNG picture's samples: 8 or 16 [default: the scene's; 1 for masks with hard edges]
     #[arg(long, value_name = "8|16", value_parser = bits)]
     pub(super) bits: Option<u8>,
-    /// Print the time of each part of the work: reading the sky, curves, render, encode, write
+    /// Print the time of each part of the work: reading the sky, memory, curves, render, encode, write
     #[arg(long, conflicts_with_all = ["explain", "dry_run"])]
     pub(super) timings: bool,
     /// Print what the picture needs and what it does not, and draw nothing. Of several frames: each figure's range, and
