@@ -55,8 +55,8 @@ pub(in crate::cli) struct RenderArgs {
     /// The largest error of an edge, in pixels, above 0 and at most 1 [default: the scene's]
     #[arg(long, value_name = "PIXELS", allow_negative_numbers = true)]
     pub(super) tolerance: Option<f64>,
-    /// Smooth edges: each pixel is the share of its square that the disk covers, a linear value and not sRGB; with false,
-    /// what its centre sees. Only --method table draws smooth edges [default: the scene's]
+    /// Smooth edges: each pixel is the share of its square that the disk covers, a linear value and not sRGB; with
+    /// false, what its centre sees. Only --method table draws smooth edges [default: the scene's]
     #[arg(long, value_name = "true|false", action = clap::ArgAction::Set)]
     pub(super) antialias: Option<bool>,
     /// The layers of a .exr or .npz file, with commas: coverage, order, radius, azimuth, redshift, emission_cosine,

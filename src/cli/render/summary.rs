@@ -126,8 +126,8 @@ fn report_errors(plan: &Plan<'_>, counts: &Counts, report: Report) {
     }
 }
 
-/// Prints the times of the parts of the work, which add up to the first line's: the time of all threads that drew frames
-/// of their own.
+/// Prints the times of the parts of the work, which add up to the first line's: the time of all threads that drew
+/// frames of their own.
 fn print_timings(counts: &Counts, outcome: &Outcome) {
     let (threads, sky) = (outcome.threads as u32, outcome.reading_sky);
     let by_the_clock = outcome.elapsed + sky.unwrap_or_default();
