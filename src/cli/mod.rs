@@ -1,7 +1,8 @@
 //! The command line: one file for each verb.
 //!
 //! Data goes to the standard output, everything else to the standard error. The exit code is 0 for success, 1 for a
-//! failure, 2 for a command line, or a scene, that makes no sense or names what is not there. A reader that closes the standard output ends the run quietly.
+//! failure, 2 for a command line or a scene that makes no sense or names what is not there. A reader that closes the
+//! standard output ends the run quietly.
 
 mod chart;
 mod completions;

@@ -541,8 +541,49 @@ fn progress_is_reported_in_the_form_that_is_asked_for() {
     );
     assert!(failed.contains("openjd_fail: "), "{failed}");
     let timings = stderr(&["--timings"]);
-    for part in ["curves", "render", "encode", "write", "frames/s"] {
-        assert!(timings.contains(part), "{timings}");
+    assert!(timings.contains("frames/s"), "{timings}");
+}
+
+/// Guards against parts above their whole, and parts that are of another run.
+#[test]
+fn the_times_of_the_parts_add_up_to_the_whole() {
+    let folder = with_animation(40);
+    let here = folder.path();
+    let render = ["render", "small.toml", "--overwrite", "--timings"];
+    for options in [
+        &["-o", PATTERN, "--threads", "2"][..],
+        &["-o", PATTERN, "--threads", "1"],
+        &["-o", "a.raw"],
+        &["-o", "f_#.exr", "--frames", "3"],
+    ] {
+        let (_, stderr) = done(here, &[&render[..], options].concat());
+        let milliseconds = |line: &str| -> f64 {
+            let (number, _) = line.trim_start().split_once(" ms ").unwrap();
+            number.parse().unwrap()
+        };
+        let lines: Vec<&str> = stderr
+            .lines()
+            .filter(|line| line.starts_with(' '))
+            .collect();
+        let parts = [
+            "memory",
+            "curves",
+            "render",
+            "encode",
+            "write",
+            "waiting and the rest",
+        ];
+        assert!(lines[0].contains(" ms  in all"), "{stderr}");
+        assert_eq!(lines.len(), 1 + parts.len(), "{stderr}");
+        for (line, part) in lines[1..].iter().zip(parts) {
+            assert!(line.ends_with(&format!(" ms    {part}")), "{stderr}");
+        }
+        let sum: f64 = lines[1..].iter().map(|line| milliseconds(line)).sum();
+        // Each number has one decimal.
+        assert!(
+            (sum - milliseconds(lines[0])).abs() < 0.05 * 7.01,
+            "{stderr}"
+        );
     }
 }
 

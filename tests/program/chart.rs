@@ -334,6 +334,7 @@ fn nothing_is_measured_for_files_that_cannot_be_written() {
     for (args, code, words) in [
         (&["-o", "a.png"][..], 2, &[".svg"][..]),
         (&["no-such-scene"], 2, &["no-such-scene"]),
+        (&["grid"], 2, &["[disk]"]),
         (&["-o", "small.toml/a.svg"], 1, &["small.toml", "-o"]),
         (&["--csv", "small.toml/a.csv"], 1, &["small.toml", "--csv"]),
         (&["--csv", "there"], 1, &["folder", "--csv"]),

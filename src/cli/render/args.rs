@@ -72,8 +72,8 @@ pub(in crate::cli) struct RenderArgs {
     /// The largest error of an edge, in pixels, above 0 and at most 1 [default: the scene's]
     #[arg(long, value_name = "PIXELS", allow_negative_numbers = true)]
     pub(super) tolerance: Option<f64>,
-    /// Smooth edges: each pixel is the share of its square that the disk covers; with false, what its centre sees. Only
-    /// --method table draws smooth edges [default: the scene's]
+    /// Smooth edges: each pixel is the share of its square that the disk covers, a linear value and not sRGB; with
+    /// false, what its centre sees. Only --method table draws smooth edges [default: the scene's]
     #[arg(long, value_name = "true|false", action = clap::ArgAction::Set)]
     pub(super) antialias: Option<bool>,
     /// The layers of a .exr or .npz file, with commas: coverage, order, radius, azimuth, redshift, emission_cosine,
@@ -87,7 +87,7 @@ pub(in crate::cli) struct RenderArgs {
     /// The bits of a PNG picture's samples: 8 or 16 [default: the scene's; 1 for masks with hard edges]
     #[arg(long, value_name = "8|16", value_parser = bits)]
     pub(super) bits: Option<u8>,
-    /// Print the time of each part of the work: reading the sky, curves, render, encode, write
+    /// Print the time of each part of the work: reading the sky, memory, curves, render, encode, write
     #[arg(long, conflicts_with_all = ["explain", "dry_run"])]
     pub(super) timings: bool,
     /// Print what the picture needs and what it does not, and draw nothing. Of several frames: each figure's range, and

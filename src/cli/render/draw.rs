@@ -40,6 +40,14 @@ impl FrameSource<'_> {
         }
     }
 
+    /// Returns how many threads draw frames of their own, of `count` frames, at most `at_a_time` of them side by side.
+    pub(super) fn threads(count: u64, at_a_time: u64) -> usize {
+        match Sharing::fastest(count, at_a_time) {
+            Sharing::SideBySide => rayon::current_num_threads(),
+            Sharing::OneByOne => 1,
+        }
+    }
+
     /// Draws the frames `numbers`, about `count`, at most `at_a_time` side by side. Frames that are not `wanted` are
     /// skipped; `done` takes each drawn frame, from several threads and in any order.
     ///

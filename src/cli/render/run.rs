@@ -27,6 +27,8 @@ use crate::sky::SkySource;
 /// What a run did.
 pub(super) struct Outcome {
     pub(super) stats: RunStats,
+    /// How many threads drew frames of their own.
+    pub(super) threads: usize,
     /// What reading the sky took, where it was read.
     pub(super) reading_sky: Option<Duration>,
     /// From the first frame to the last.
@@ -51,7 +53,8 @@ pub(super) fn run(plan: &Plan<'_>, method: &Method, report: Report) -> anyhow::R
     let sky = read_sky(plan, &origin, report)?;
     let reading_sky = sky.as_ref().map(|_| start.elapsed());
     let sky_bytes = sky.as_ref().map_or(0, |sky| sky::bytes(sky));
-    let most_memory = ByteSize(plan.args.max_memory.as_u64().saturating_sub(sky_bytes));
+    let left = ByteSize(plan.args.max_memory.as_u64().saturating_sub(sky_bytes));
+    let at_a_time = memory::frames_in(left, plan.first.image(), plan.form);
     let start = Instant::now();
     let (animation, form) = (plan.animation, plan.form);
     let stats = FrameSource::with(animation, form, method, sky, &row_done, |frames| {
@@ -66,7 +69,7 @@ pub(super) fn run(plan: &Plan<'_>, method: &Method, report: Report) -> anyhow::R
             plan,
             frames,
             origin,
-            most_memory,
+            at_a_time,
             progress: report.frames(kind, plan.count, plan.pixels()),
             stats: RunStats::default(),
             interrupt: &interrupt,
@@ -83,6 +86,7 @@ pub(super) fn run(plan: &Plan<'_>, method: &Method, report: Report) -> anyhow::R
     })?;
     Ok(Outcome {
         stats,
+        threads: FrameSource::threads(plan.count, at_a_time),
         reading_sky,
         elapsed: start.elapsed(),
         interrupt,
@@ -166,8 +170,8 @@ struct Run<'a> {
     plan: &'a Plan<'a>,
     frames: &'a FrameSource<'a>,
     origin: FrameOrigin,
-    /// What the frames drawn at a time may take.
-    most_memory: ByteSize,
+    /// How many frames may be drawn at a time.
+    at_a_time: u64,
     progress: FrameProgress,
     stats: RunStats,
     interrupt: &'a Interrupt,
@@ -185,9 +189,8 @@ impl Run<'_> {
             .frames
             .iter()
             .take_while(|_| !self.interrupt.is_asked());
-        let at_a_time = memory::frames_in(self.most_memory, plan.first.image(), plan.form);
         self.frames
-            .draw_all(numbers, plan.count, at_a_time, wanted, done)
+            .draw_all(numbers, plan.count, self.at_a_time, wanted, done)
     }
 
     /// Draws one frame into one file, or to the standard output.

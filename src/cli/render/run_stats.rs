@@ -24,8 +24,8 @@ pub(super) struct Counts {
     pub(super) ray_by_ray: u64,
     /// The frame with the largest error of an edge, the first of equals.
     pub(super) worst: Option<(i64, FrameReport)>,
-    /// Times summed over all threads: for curves, pixels, encoding and writing.
-    pub(super) times: [Duration; 4],
+    /// Times summed over all threads: for the frames' memory, curves, pixels, encoding and writing.
+    pub(super) times: [Duration; 5],
     /// The numbers of the frames that failed, by what is wrong with their files.
     failures: BTreeMap<String, Vec<i64>>,
 }
@@ -42,7 +42,13 @@ impl RunStats {
         let mut counts = self.counts();
         counts.drawn += 1;
         counts.ray_by_ray += u64::from(effort.ray_by_ray);
-        let times = [effort.curves, effort.pixels, encoding, writing];
+        let times = [
+            effort.memory,
+            effort.curves,
+            effort.pixels,
+            encoding,
+            writing,
+        ];
         for (sum, time) in counts.times.iter_mut().zip(times) {
             *sum += time;
         }

@@ -126,16 +126,28 @@ fn report_errors(plan: &Plan<'_>, counts: &Counts, report: Report) {
     }
 }
 
-/// Prints the times of the parts of the work, those of frames summed over all threads.
+/// Prints the times of the parts of the work, which add up to the first line's: the time of all threads that drew
+/// frames of their own.
 fn print_timings(counts: &Counts, outcome: &Outcome) {
-    let sky = outcome.reading_sky.map(|time| ("reading the sky", time));
-    let frames = ["curves", "render", "encode", "write"]
-        .into_iter()
-        .zip(counts.times);
-    let all = ("all, from the first frame to the last", outcome.elapsed);
-    let lines = sky.into_iter().chain(frames).chain([all]);
+    let (threads, sky) = (outcome.threads as u32, outcome.reading_sky);
+    let by_the_clock = outcome.elapsed + sky.unwrap_or_default();
+    let drawing = outcome.elapsed * threads;
+    let all = drawing + sky.unwrap_or_default();
+    let rest = drawing.saturating_sub(counts.times.iter().sum());
+    let names = ["memory", "curves", "render", "encode", "write"];
+    let lines = (sky.into_iter().map(|time| ("reading the sky", time)))
+        .chain(names.into_iter().zip(counts.times))
+        .chain([("waiting and the rest", rest)]);
     let mut stderr = io::stderr();
+    let on_threads = match threads {
+        1 => String::new(),
+        _ => format!(
+            " on {threads} threads, {} by the clock",
+            duration(by_the_clock)
+        ),
+    };
+    let _ = writeln!(stderr, "{:>10}  in all{on_threads}", duration(all));
     for (name, time) in lines {
-        let _ = writeln!(stderr, "{:>10}  {name}", duration(time));
+        let _ = writeln!(stderr, "{:>10}    {name}", duration(time));
     }
 }

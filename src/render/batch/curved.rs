@@ -73,7 +73,9 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
         let scene = self.animation.frame(number)?;
         let view = View::new(&scene);
         let form = memory.form();
+        let begun = Instant::now();
         let target = memory.target(&view)?;
+        let memory = begun.elapsed();
         let block = self.block(number);
         let source = self.sky.source(&scene, form)?;
         let (own, own_map, own_sky);
@@ -110,10 +112,11 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
                 Threads::This
             },
         };
-        let time = start.elapsed();
+        let curves = start.elapsed().saturating_sub(memory);
         let report = frame.draw(workspace, target)?;
         Ok(FrameReport {
-            curves: time,
+            memory,
+            curves,
             ..report
         })
     }

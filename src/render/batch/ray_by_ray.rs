@@ -56,6 +56,8 @@ impl<O: Orbits> Frames for RayByRay<'_, O> {
         let scene = self.animation.frame(number)?;
         let view = View::new(&scene);
         let form = memory.form();
+        let target = memory.target(&view)?;
+        let memory = start.elapsed();
         let source = self.sky.source(&scene, form)?;
         let radius = if form.needs_escape(&scene) {
             let radius = SkyAtRadius::from_orbits(&scene, &view, source, self.orbits);
@@ -73,9 +75,10 @@ impl<O: Orbits> Frames for RayByRay<'_, O> {
             colours: self.colours.of(&scene, form),
             sky: sky.as_ref(),
         };
-        frame.draw(self.row_done, memory.target(&view)?)?;
+        frame.draw(self.row_done, target)?;
         Ok(FrameReport {
-            pixels: start.elapsed(),
+            memory,
+            pixels: start.elapsed().saturating_sub(memory),
             ..FrameReport::default()
         })
     }

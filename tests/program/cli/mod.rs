@@ -68,6 +68,10 @@ fn help_and_version_succeed_and_a_missing_verb_is_misuse() {
     ] {
         assert!(printed(here, args).len() > 10);
     }
+    let help = printed(here, &["render", "--help"]).replace(['\n', ' '], "");
+    for words in ["a linear value and not sRGB", "gAMA 1.0"] {
+        assert!(help.contains(&words.replace(' ', "")), "{words}");
+    }
     let output = darkness(here, &[]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     let stderr = String::from_utf8(output.stderr).unwrap();

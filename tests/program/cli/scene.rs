@@ -81,6 +81,26 @@ fn scenes_are_listed_and_a_printed_one_renders_the_same_picture() {
     );
 }
 
+/// What the scene's own text says of it.
+#[test]
+fn edge_on_is_its_own_mirror_image() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    let edges = |antialias| {
+        let options = ["--antialias", antialias, "--format", "raw", "-o", "-"];
+        let mask = done(here, &[&["render", "edge-on"], &options[..]].concat()).0;
+        let rows: Vec<&[u8]> = mask.chunks(1920).collect();
+        let pairs = rows.iter().zip(rows.iter().rev());
+        let pairs = pairs.flat_map(|(above, below)| above.iter().zip(*below));
+        let apart = pairs.map(|(above, below)| above.abs_diff(*below)).max();
+        // Where the disk itself would be, beside the hole and within its outer edge, there is nothing.
+        assert!(rows[539][1..300].iter().all(|&grey| grey == 0));
+        apart
+    };
+    assert_eq!(edges("false"), Some(0));
+    assert_eq!(edges("true"), Some(1));
+}
+
 #[test]
 fn files_that_are_not_scenes_are_refused_in_a_sentence() {
     let folder = tempdir().unwrap();
