@@ -56,7 +56,8 @@ pub struct Unfinished {
 }
 
 impl Unfinished {
-    /// Makes the folder where it is missing, removes what killed processes left for `path`, and [begins](Self::new) the file.
+    /// Makes the folder where it is missing, removes what killed processes left for `path`, and [begins](Self::new) the
+    /// file.
     ///
     /// # Errors
     /// Those of [`Self::new`].

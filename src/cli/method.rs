@@ -20,9 +20,9 @@ pub(super) const DEFAULT_TABLE: &str = "standard";
 const TABLE_VARIABLE: &str = "DARKNESS_TABLE";
 
 const TABLE_HELP: &str = "The table to read with --method table, made where it is missing: the one that the file is \
-    named after, else the one that the picture needs, standard at least [env: DARKNESS_TABLE] [default: standard.table; \
-    a picture that needs less or more takes draft.table or fine.table; all in the folder tables, or without such a \
-    folder in the user's cache (~/.cache/darkness, or the folder that DARKNESS_CACHE names)]";
+    named after, else the one that the picture needs, standard at least [env: DARKNESS_TABLE] [default: \
+    standard.table; a picture that needs less or more takes draft.table or fine.table; all in the folder tables, or \
+    without such a folder in the user's cache (~/.cache/darkness, or the folder that DARKNESS_CACHE names)]";
 
 /// The tolerances that [`Adaptive`] can be given. Above them it takes the upper bound; at the lower bound its steps are
 /// as short as helps.

@@ -7,7 +7,8 @@ use super::vector::{direction, norm};
 /// Returns the unit vector away from the hole at an inclination i from +z and an azimuth a from +x, in degrees, and the
 /// direction that is up there.
 ///
-/// The first is `(sin i cos a, sin i sin a, cos i)`. Up is minus its derivative by i, which is defined at the poles too.
+/// The first is `(sin i cos a, sin i sin a, cos i)`. Up is minus its derivative by i, which is defined at the poles
+/// too.
 pub(super) fn outward_and_up(inclination: f64, azimuth: f64) -> (DVec3, DVec3) {
     let (sin_i, cos_i) = sine_and_cosine(inclination);
     let (sin_a, cos_a) = sine_and_cosine(azimuth);
@@ -35,7 +36,8 @@ pub(super) fn rolled_up(view: DVec3, up: DVec3, degrees: f64) -> DVec3 {
     direction(across * cosine - right * sine)
 }
 
-/// Returns the sine and the cosine of an angle in degrees, exact at multiples of 90: a camera at 90° is exactly in the disk's plane.
+/// Returns the sine and the cosine of an angle in degrees, exact at multiples of 90: a camera at 90° is
+/// exactly in the disk's plane.
 pub(super) fn sine_and_cosine(degrees: f64) -> (f64, f64) {
     // Both are exact: a remainder is, and so is a difference of two numbers within a factor of two.
     let turned = degrees % 360.0;

@@ -36,7 +36,8 @@ pub(in crate::cli) struct RenderArgs {
     /// The camera's radius, in Schwarzschild radii, or its orbit's. The angles stay [default: the scene's]
     #[arg(long, value_name = "R", allow_negative_numbers = true)]
     pub(super) radius: Option<f64>,
-    /// The camera's inclination from +z, or its orbit's: 0 is face-on to a level disk, 90 edge-on [default: the scene's]
+    /// The camera's inclination from +z, or its orbit's: 0 is face-on to a level disk, 90 edge-on [default: the
+    /// scene's]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     pub(super) inclination: Option<f64>,
     /// The camera's azimuth from +x, or its orbit's [default: the scene's]

@@ -39,7 +39,8 @@ pub(super) struct Span {
 }
 
 impl Block {
-    /// Finds the spans of the block that a frame is in. Blocks are counted from the animation's first frame. Invalid frames are in no span.
+    /// Finds the spans of the block that a frame is in. Blocks are counted from the animation's first frame. Invalid
+    /// frames are in no span.
     pub(super) fn new(animation: &Animation, frame: i64) -> Self {
         let first = frame - (frame - animation.first()).rem_euclid(BLOCK);
         let last = (first + BLOCK - 1).min(animation.last());

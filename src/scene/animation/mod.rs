@@ -250,8 +250,8 @@ impl Animation {
     /// The scene of frame `number`.
     ///
     /// # Errors
-    /// [`SceneError::NoFrame`] for a number outside [`Self::first`] to [`Self::last`]; [`SceneError::InFrame`] for a camera that
-    /// is inside the horizon or the disk, or that looks nowhere.
+    /// [`SceneError::NoFrame`] for a number outside [`Self::first`] to [`Self::last`]; [`SceneError::InFrame`] for a
+    /// camera that is inside the horizon or the disk, or that looks nowhere.
     pub fn frame(&self, number: i64) -> Result<Scene, SceneError> {
         let (first, last) = (self.first, self.last());
         if !(first..=last).contains(&number) {
