@@ -94,7 +94,7 @@ fn main() {
                 Curved::new(&animation, &Exact, None),
             );
             let draw = |frames: &Curved<'_, Exact>| {
-                let all = FrameRange::up_to(FRAMES);
+                let all = FrameRange::up_to(FRAMES.into());
                 let done = |drawn: DrawnFrame<'_>| {
                     drawn.pixels.map(|(frame, _)| {
                         std::hint::black_box(frame);

@@ -23,10 +23,12 @@ pub const LONGEST_NAME: usize = 200;
 
 /// Writes a file through `fill`, whole or not at all, and syncs it to the disk. Whatever stops the process or the disk,
 /// `path` holds its old content, the new content, or nothing. Unfinished files that killed processes left for `path`
-/// are removed. The mode follows the umask.
+/// are removed. A symbolic link is followed, whether or not it leads to a file. The mode is that of the file that is
+/// replaced; for a new file it follows the umask.
 ///
 /// # Errors
-/// What creating, filling, syncing or renaming the file returns. The unfinished file is then removed.
+/// What creating, filling, syncing or renaming the file returns. The unfinished file is then removed. A file that may
+/// not be written is not replaced.
 pub fn write_whole(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
@@ -37,9 +39,10 @@ pub fn write_whole(
         fill(&mut writer)?;
         writer.flush()?;
     }
+    let folder = folder_of(&unfinished.path).to_owned();
     unfinished.finish()?;
     // Syncing the folder makes the rename last. Not every system can open folders; the file is whole either way.
-    if let Ok(folder) = File::open(folder_of(path)) {
+    if let Ok(folder) = File::open(folder) {
         let _ = folder.sync_all();
     }
     Ok(())
@@ -53,23 +56,29 @@ pub struct Unfinished {
 }
 
 impl Unfinished {
-    /// Removes what killed processes left for `path`, and [begins](Self::new) the file.
+    /// Makes the folder where it is missing, removes what killed processes left for `path`, and [begins](Self::new) the
+    /// file.
     ///
     /// # Errors
     /// Those of [`Self::new`].
     pub fn after_leftovers(path: &Path) -> io::Result<Self> {
+        let path = led_to(path)?;
         let name = path.file_name().map(label).unwrap_or_default();
-        remove_leftovers(folder_of(path), |left| left == name.as_encoded_bytes());
-        Self::new(path)
+        make_folder(folder_of(&path))?;
+        remove_leftovers(folder_of(&path), |left| left == name.as_encoded_bytes());
+        Self::new(&path)
     }
 
-    /// Begins a file that will be at `path`.
+    /// Begins a file that will be at `path`, or where a link at `path` leads to.
     ///
     /// # Errors
-    /// What creating a file in the same folder returns.
+    /// What creating a file in the same folder returns; a file that may not be written is there.
     pub fn new(path: &Path) -> io::Result<Self> {
-        // A link is followed, not replaced.
-        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let path = led_to(path)?;
+        let replaced = fs::metadata(&path).ok().filter(fs::Metadata::is_file);
+        if replaced.is_some() {
+            check_writable(&path)?;
+        }
         let mut prefix = OsString::from(".");
         prefix.push(path.file_name().map(label).unwrap_or_default());
         prefix.push(".");
@@ -90,6 +99,10 @@ impl Unfinished {
                 Err(TryLockError::WouldBlock)
             ) || !temporary.path().exists();
             if !is_taken {
+                if let Some(replaced) = replaced {
+                    // Disks without modes refuse, and have none to keep.
+                    let _ = temporary.as_file().set_permissions(replaced.permissions());
+                }
                 return Ok(Self { temporary, path });
             }
         }
@@ -173,6 +186,53 @@ fn bare(error: io::Error) -> io::Error {
     }
 }
 
+/// Checks that a file may be written: by its mode, whoever runs the program, and by the system. It is not changed.
+///
+/// # Errors
+/// It may not, or is not there.
+pub fn check_writable(path: &Path) -> io::Result<()> {
+    if fs::metadata(path)?.permissions().readonly() {
+        let problem = "the file is read-only";
+        return Err(io::Error::new(io::ErrorKind::PermissionDenied, problem));
+    }
+    File::options().write(true).open(path).map(drop)
+}
+
+/// Returns what a path leads to through symbolic links, whether or not anything exists there.
+///
+/// # Errors
+/// Links that lead in a circle.
+pub fn led_to(path: &Path) -> io::Result<PathBuf> {
+    // As many as Linux follows.
+    const MOST_LINKS: usize = 40;
+    if let Ok(path) = fs::canonicalize(path) {
+        return Ok(path);
+    }
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let Ok(link) = fs::read_link(&path) else {
+            return Ok(path);
+        };
+        path = folder_of(&path).join(link);
+    }
+    Err(io::Error::other("symbolic links lead in a circle"))
+}
+
+/// Makes a folder, and those above it, where they are missing. Links that lead to no folder yet are followed.
+///
+/// # Errors
+/// What the system returns.
+pub fn make_folder(folder: &Path) -> io::Result<()> {
+    let mut folders: Vec<&Path> = folder.ancestors().collect();
+    folders.reverse();
+    for folder in folders.into_iter().filter(|folder| !folder.is_dir()) {
+        if !folder.as_os_str().is_empty() {
+            fs::create_dir_all(led_to(folder)?)?;
+        }
+    }
+    Ok(())
+}
+
 /// The folder of a file.
 fn folder_of(path: &Path) -> &Path {
     match path.parent() {
@@ -227,6 +287,56 @@ mod tests {
         assert!(failed.is_err());
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(names(folder.path()), ["a.table"]);
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn links_are_followed_whether_or_not_they_lead_to_a_file() {
+        use std::os::unix::fs::symlink;
+
+        let folder = tempfile::tempdir().unwrap();
+        let here = folder.path();
+        fs::create_dir(here.join("real")).unwrap();
+        symlink("real/b", here.join("a")).unwrap();
+        symlink("c", here.join("real/b")).unwrap();
+        fs::write(here.join("real/.c.Ab3xY9.part"), "half").unwrap();
+        for content in ["new", "newer"] {
+            write_whole(&here.join("a"), |file| file.write_all(content.as_bytes())).unwrap();
+            assert_eq!(fs::read_to_string(here.join("real/c")).unwrap(), content);
+        }
+        assert_eq!(names(here), ["a", "real"]);
+        assert_eq!(names(&here.join("real")), ["b", "c"]);
+
+        symlink("new/folder", here.join("out")).unwrap();
+        make_folder(&here.join("out/within")).unwrap();
+        assert!(here.join("new/folder/within").is_dir());
+
+        symlink("round", here.join("round")).unwrap();
+        assert!(write_whole(&here.join("round"), |_| Ok(())).is_err());
+        assert!(make_folder(&here.join("round/within")).is_err());
+        assert!(here.join("round").is_symlink());
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_read_only_file_is_not_replaced_and_other_modes_are_kept() {
+        use std::os::unix::fs::PermissionsExt;
+
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        fs::write(&path, "old").unwrap();
+        let set = |mode| fs::set_permissions(&path, fs::Permissions::from_mode(mode)).unwrap();
+        set(0o444);
+        let error = write_whole(&path, |file| file.write_all(b"new")).unwrap_err();
+        assert!(error.to_string().contains("read-only"), "{error}");
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        for mode in [0o600, 0o664, 0o777] {
+            set(mode);
+            write_whole(&path, |file| file.write_all(b"new")).unwrap();
+            let kept = fs::metadata(&path).unwrap().permissions().mode();
+            assert_eq!(kept & 0o7777, mode);
+        }
+        assert_eq!(names(folder.path()), ["a.png"]);
     }
 
     #[test]

@@ -11,7 +11,7 @@ use super::progress::{Report, duration};
 use super::stdio::print;
 use super::threads::{ThreadArgs, start_threads};
 use super::writable;
-use crate::chart::{ChartData, ChartEffort, draw, write_csv};
+use crate::chart::{ChartData, ChartEffort, ChartError, draw, write_csv};
 use crate::output::write_whole;
 use crate::scene::{DEFAULT_SCENE, Scene};
 
@@ -41,6 +41,9 @@ pub(super) struct ChartArgs {
 /// Runs the verb.
 pub(super) fn run(args: &ChartArgs, report: Report) -> anyhow::Result<()> {
     let scene = Scene::load(&args.scene)?;
+    if scene.disk().is_none() {
+        return Err(misuse(ChartError::NoDisk.to_string()));
+    }
     let destination = Destination::of_picture(args.output.clone(), "svg", &args.scene)?;
     if let Some(path) = &args.csv {
         check_csv(path, &args.output, &args.scene)?;

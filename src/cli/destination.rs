@@ -77,7 +77,7 @@ impl Destination {
     }
 
     /// The file that a frame goes to.
-    pub(super) fn file(&self, number: u32) -> PathBuf {
+    pub(super) fn file(&self, number: i64) -> PathBuf {
         match self {
             Self::Stdout => "-".into(),
             Self::File(path) | Self::Device(path) => path.clone(),

@@ -8,9 +8,9 @@ use super::misuse::misuse;
 use super::progress::Report;
 use super::render;
 use super::stdio::print;
+use super::table_path::portable_path;
 use crate::render::needs::Needs;
 use crate::scene::{Animation, builtins};
-use crate::table;
 
 /// Print an animation as a job for a render farm
 ///
@@ -59,7 +59,8 @@ pub(super) fn run(args: &JobArgs, report: Report) -> anyhow::Result<()> {
         )));
     }
     let frames = animation.frames();
-    for number in (1..=frames).step_by(frames.div_ceil(LOOKED_AT) as usize) {
+    let (first, last) = (animation.first(), animation.last());
+    for number in (first..=last).step_by(frames.div_ceil(LOOKED_AT) as usize) {
         animation.check(number)?;
     }
     let (output, form) = render::sequence(&args.scene, &animation, args.output.as_deref())?;
@@ -68,7 +69,7 @@ pub(super) fn run(args: &JobArgs, report: Report) -> anyhow::Result<()> {
     if needs.table().is_none() {
         report.note("no table is good enough for some of these frames; fine is the best there is");
     }
-    let default = || table::default_path(table_name);
+    let default = || portable_path(table_name);
     let table = args.table.clone().unwrap_or_else(default);
     let [scene, table, output] = [&args.scene, &table, &output].map(|path| text(path));
     let (scene, table, output) = (scene?, table?, output?);
@@ -112,12 +113,24 @@ pub(super) fn run(args: &JobArgs, report: Report) -> anyhow::Result<()> {
     };
     pieces.extend([
         ("FRAMES", frames.to_string()),
+        ("FIRST", first.to_string()),
+        ("LAST", last.to_string()),
         ("CHUNK", args.chunk.to_string()),
         ("TABLE_NAME", table_name.to_owned()),
+        ("NAME", name(&args.scene)),
         ("TITLE", args.scene.display().to_string()),
         ("VERSION", env!("CARGO_PKG_VERSION").to_owned()),
     ]);
     Ok(print(&fill(template, &pieces))?)
+}
+
+/// The job's name, from the scene's: what every scheduler and shell takes as one word.
+fn name(scene: &Path) -> String {
+    let stem = scene.file_stem().unwrap_or_default().to_string_lossy();
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+    let name = stem.replace(|c| !is_plain(c), "_");
+    let name = name.trim_start_matches(['-', '.']);
+    format!("darkness-{}", &name[..name.len().min(100)])
 }
 
 /// A path as text for a job: one line, and nothing that a command takes for an option.

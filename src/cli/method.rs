@@ -9,8 +9,9 @@ use clap::{Args, ValueEnum};
 use super::misuse::misuse;
 use super::progress::{Report, warn};
 use super::remedy::with_remedy;
+use super::table_path::default_path;
 use crate::orbit::integrate::Adaptive;
-use crate::table::{self, Spec, SpecError, Table, TableError};
+use crate::table::{Spec, SpecError, Table, TableError};
 
 /// The table for rays of all kinds.
 pub(super) const DEFAULT_TABLE: &str = "standard";
@@ -18,9 +19,10 @@ pub(super) const DEFAULT_TABLE: &str = "standard";
 /// The environment variable that names the table where `--table` does not.
 const TABLE_VARIABLE: &str = "DARKNESS_TABLE";
 
-const TABLE_HELP: &str = "The table to read with --method table [env: DARKNESS_TABLE] \
-    [default: tables/standard.table; a picture that needs less or more takes tables/draft.table or tables/fine.table; \
-    made where it is missing]";
+const TABLE_HELP: &str = "The table to read with --method table, made where it is missing: the one that the file is \
+    named after, else the one that the picture needs, standard at least [env: DARKNESS_TABLE] [default: \
+    standard.table; a picture that needs less or more takes draft.table or fine.table; all in the folder tables, or \
+    without such a folder in the user's cache (~/.cache/darkness, or the folder that DARKNESS_CACHE names)]";
 
 /// The tolerances that [`Adaptive`] can be given. Above them it takes the upper bound; at the lower bound its steps are
 /// as short as helps.
@@ -67,7 +69,11 @@ pub(super) enum Checked {
     /// It needs nothing.
     Ready(Method),
     /// It needs the table of that name, which has to be made.
-    TableMissing { name: &'static str, path: PathBuf },
+    TableMissing {
+        name: &'static str,
+        path: PathBuf,
+        named_by: NamedBy,
+    },
 }
 
 /// A method, ready to follow rays.
@@ -85,8 +91,7 @@ impl MethodArgs {
     /// taken; it is `None` where no table is accurate enough.
     ///
     /// # Errors
-    /// A misuse, or a table that cannot be read. Only a missing default table is made unasked: a damaged table is never
-    /// replaced, and a file that the user names is never created.
+    /// A misuse, or a table that cannot be read. A missing table can be made; a damaged one is never replaced.
     pub(super) fn check(&self, needed: Option<&'static str>) -> anyhow::Result<Checked> {
         if self.integrate_tolerance.is_some() && self.method != MethodName::Integrate {
             return Err(misuse("--integrate-tolerance needs --method integrate"));
@@ -109,20 +114,16 @@ impl MethodArgs {
                 } else {
                     Table::open(&file.path)
                 };
-                match (opened, needed) {
-                    (Ok(table), _) => Method::Table(table),
-                    (Err(TableError::Missing { path }), Some(name))
-                        if file.named_by == NamedBy::Default =>
-                    {
-                        return Ok(Checked::TableMissing { name, path });
+                match opened {
+                    Ok(table) => Method::Table(table),
+                    Err(TableError::Missing { path }) => {
+                        return Ok(Checked::TableMissing {
+                            name: file.table_name(needed),
+                            path,
+                            named_by: file.named_by,
+                        });
                     }
-                    (Err(error), _) if file.named_by == NamedBy::Variable => {
-                        anyhow::bail!(
-                            "{} (the environment's {TABLE_VARIABLE} names this file)",
-                            with_remedy(&error)
-                        )
-                    }
-                    (Err(error), _) => return Err(with_remedy(&error)),
+                    Err(error) => return Err(file.named_by.refuse(&error)),
                 }
             }
         };
@@ -145,7 +146,7 @@ impl MethodArgs {
         let variable = || std::env::var_os(TABLE_VARIABLE).filter(|name| !name.is_empty());
         let flag = self.table.clone().map(|path| (path, NamedBy::Flag));
         let named = flag.or_else(|| variable().map(|path| (path.into(), NamedBy::Variable)));
-        let default = || needed.map(|name| (table::default_path(name), NamedBy::Default));
+        let default = || needed.map(|name| (default_path(name), NamedBy::Default));
         let (path, named_by) = named.or_else(default)?;
         Some(TableFile { path, named_by })
     }
@@ -157,11 +158,39 @@ struct TableFile {
     named_by: NamedBy,
 }
 
-#[derive(Debug, PartialEq, Eq)]
-enum NamedBy {
+impl TableFile {
+    /// Returns the name of the table that is made here: the one that the file is named after. Else it is the one that
+    /// is needed, but at least the standard one, which serves other pictures too.
+    fn table_name(&self, needed: Option<&'static str>) -> &'static str {
+        let stem = self.path.file_stem().unwrap_or_default();
+        let of_file = Spec::NAMES.into_iter().find(|&name| stem == name);
+        of_file.unwrap_or(match needed {
+            Some("draft") => DEFAULT_TABLE,
+            Some(name) => name,
+            None => "fine",
+        })
+    }
+}
+
+/// What named a table's file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum NamedBy {
     Flag,
     Variable,
     Default,
+}
+
+impl NamedBy {
+    /// Returns the error of a table's file, with what can be done about it.
+    fn refuse(self, error: &TableError) -> anyhow::Error {
+        let error = with_remedy(error);
+        match self {
+            Self::Variable => {
+                anyhow::anyhow!("{error} (the environment's {TABLE_VARIABLE} names this file)")
+            }
+            Self::Flag | Self::Default => error,
+        }
+    }
 }
 
 impl Checked {
@@ -172,7 +201,9 @@ impl Checked {
     pub(super) fn without_making(self) -> anyhow::Result<Method> {
         match self {
             Self::Ready(method) => Ok(method),
-            Self::TableMissing { path, .. } => Err(with_remedy(&TableError::Missing { path })),
+            Self::TableMissing { path, named_by, .. } => {
+                Err(named_by.refuse(&TableError::Missing { path }))
+            }
         }
     }
 
@@ -183,10 +214,10 @@ impl Checked {
     pub(super) fn ready(self, report: Report) -> anyhow::Result<Method> {
         let (name, path) = match self {
             Self::Ready(method) => return Ok(method),
-            Self::TableMissing { name, path } => (name, path),
+            Self::TableMissing { name, path, .. } => (name, path),
         };
         report.note(format_args!(
-            "{} is not there yet: making it once",
+            "{} is not there yet: making the {name} table, once",
             path.display()
         ));
         let table = make(&spec(name)?, report)?;

@@ -1,13 +1,16 @@
 //! The command line: one file for each verb.
 //!
 //! Data goes to the standard output, everything else to the standard error. The exit code is 0 for success, 1 for a
-//! failure, 2 for a command line that makes no sense. A reader that closes the standard output ends the run quietly.
+//! failure, 2 for a command line or a scene that makes no sense or names what is not there. A reader that closes the
+//! standard output ends the run quietly.
 
 mod chart;
+mod completions;
 mod destination;
 mod frame_range;
 mod interrupt;
 mod job;
+mod man;
 mod method;
 mod misuse;
 mod pattern;
@@ -18,13 +21,14 @@ mod render;
 mod scene;
 mod stdio;
 mod table;
+mod table_path;
 mod threads;
 mod trace;
 mod writable;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 pub use frame_range::{FrameRange, FrameRangeError};
 use interrupt::Interrupted;
 use misuse::Misuse;
@@ -32,11 +36,13 @@ use progress::{Report, warn};
 use stdio::StdoutError;
 use threads::{STARTING_MEMORY, check_memory};
 
+use crate::scene::SceneError;
+
 /// Renders what a black hole does to the light of its accretion disk.
 ///
 /// The equation of light around a Schwarzschild hole is solved once, for all rays, into a small table. A picture of the
 /// disk from any place then takes milliseconds. `darkness render` makes the table where it is missing. Lengths are in
-/// Schwarzschild radii, angles in radians.
+/// Schwarzschild radii, the angles of rays in radians, those of cameras in degrees.
 #[derive(Debug, Parser)]
 #[command(name = "darkness", version, after_help = EXAMPLES)]
 struct Cli {
@@ -56,20 +62,26 @@ Examples:
   darkness scene classic > mine.toml         a scene to start from
   darkness render mine.toml
   darkness table fine                        the most accurate table
-  darkness render --table tables/fine.table
   printf 'u0,dudphi\\n0.03,0.1\\n' | darkness trace
   darkness chart --quick                     speed against accuracy on this machine, as chart.svg
+  darkness completions bash                  for zsh, fish, powershell too; darkness man: manual pages
 
-Exit codes: 0 success, 1 failure, 2 usage error, 130 and 143 stopped by Ctrl-C and SIGTERM.";
+Exit codes: 0 success, 1 failure, 2 usage error (an option, a scene, or an input that is not there), 130 and 143 stopped
+by Ctrl-C and SIGTERM.";
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    Render(render::RenderArgs),
+    Render(Box<render::RenderArgs>),
     Table(table::TableArgs),
     Trace(trace::TraceArgs),
     Scene(scene::SceneArgs),
     Chart(chart::ChartArgs),
     Job(job::JobArgs),
+    // Needed once, and named at the end of the help.
+    #[command(hide = true)]
+    Completions(completions::CompletionsArgs),
+    #[command(hide = true)]
+    Man(man::ManArgs),
 }
 
 /// Runs the program with the process's arguments.
@@ -95,6 +107,8 @@ pub fn run() -> ExitCode {
         Verb::Scene(args) => scene::run(&args),
         Verb::Chart(args) => chart::run(&args, report),
         Verb::Job(args) => job::run(&args, report),
+        Verb::Completions(args) => completions::run(&args, Cli::command()),
+        Verb::Man(args) => man::run(&args, Cli::command()),
     };
     match run() {
         Ok(()) => ExitCode::SUCCESS,
@@ -107,12 +121,20 @@ pub fn run() -> ExitCode {
         }
         Err(error) => {
             warn(&error);
-            ExitCode::from(match error.downcast_ref::<Interrupted>() {
-                Some(interrupted) => interrupted.code(),
-                None if error.is::<Misuse>() => 2,
-                None => 1,
-            })
+            ExitCode::from(code(&error))
         }
+    }
+}
+
+/// The exit code of a failed run.
+fn code(error: &anyhow::Error) -> u8 {
+    match (error.downcast_ref(), error.downcast_ref()) {
+        (Some(interrupted), _) => Interrupted::code(interrupted),
+        // The scene is a part of the command line, but a disk that fails while it is read is not.
+        (_, Some(SceneError::Read { error, .. })) if error.raw_os_error().is_some() => 1,
+        (_, Some(_)) => 2,
+        _ if error.is::<Misuse>() => 2,
+        _ => 1,
     }
 }
 
@@ -122,7 +144,6 @@ mod tests {
 
     #[test]
     fn the_definition_of_the_command_line_is_consistent() {
-        use clap::CommandFactory;
         Cli::command().debug_assert();
     }
 }

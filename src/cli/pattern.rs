@@ -9,8 +9,8 @@ use crate::output::LONGEST_NAME;
 /// The most digits that a number can be padded to.
 const WIDEST: usize = 20;
 
-/// The digits of the largest number.
-const MOST_DIGITS: usize = 10;
+/// The digits of the longest number, with its sign.
+const MOST_DIGITS: usize = 11;
 
 const TWO_NUMBERS: &str = "the frame's number has two places in the name; leave one";
 
@@ -74,25 +74,25 @@ impl Pattern {
     }
 
     /// A frame's file.
-    pub(super) fn file(&self, number: u32) -> PathBuf {
-        let Self {
-            before,
-            width,
-            after,
-            ..
-        } = self;
-        self.folder.join(format!("{before}{number:0width$}{after}"))
+    pub(super) fn file(&self, number: i64) -> PathBuf {
+        let number = self.written(number);
+        self.folder
+            .join(format!("{}{number}{}", self.before, self.after))
+    }
+
+    /// A frame's number as printf writes it: the sign is one of the digits.
+    fn written(&self, number: i64) -> String {
+        format!("{number:0width$}", width = self.width)
     }
 
     /// The number of the frame whose file has this name.
-    pub(super) fn number(&self, name: &[u8]) -> Option<u32> {
+    pub(super) fn number(&self, name: &[u8]) -> Option<i64> {
         let name = name.strip_prefix(self.before.as_bytes())?;
         let digits = name.strip_suffix(self.after.as_bytes())?;
-        let filled = digits.len() == self.width || !digits.starts_with(b"0");
-        if digits.len() < self.width || !filled || !digits.iter().all(u8::is_ascii_digit) {
-            return None;
-        }
-        std::str::from_utf8(digits).ok()?.parse().ok()
+        let digits = std::str::from_utf8(digits).ok()?;
+        let number: i64 = digits.parse().ok()?;
+        let is_number = u32::try_from(number.unsigned_abs()).is_ok();
+        (is_number && digits == self.written(number)).then_some(number)
     }
 }
 
@@ -142,6 +142,9 @@ mod tests {
             ("100%_%03d.png", 5, "100%_005.png"),
             ("dots...##", 5, "dots...05"),
             ("é_##_ü.png", 5, "é_05_ü.png"),
+            ("f_####.png", 0, "f_0000.png"),
+            ("f_####.png", -7, "f_-007.png"),
+            ("f_#.png", -12, "f_-12.png"),
         ] {
             let pattern = pattern(path);
             assert_eq!(pattern.file(number), Path::new(file));
@@ -162,6 +165,10 @@ mod tests {
             "g_001.png",
             "f_001.png~",
             "f_+12.png",
+            "f_-1.png",
+            "f_-0.png",
+            "f_-00.png",
+            "f_--1.png",
             "f_99999999999.png",
         ] {
             assert_eq!(pattern.number(name.as_bytes()), None, "{name}");

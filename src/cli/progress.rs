@@ -112,9 +112,9 @@ impl FrameProgress {
     }
 
     /// Counts a frame, and prints a line if one is due.
-    fn tell(&self, count: impl FnOnce(&ProgressBar)) {
+    fn tell(&self, step: impl FnOnce(&ProgressBar)) {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        count(&self.bar);
+        step(&self.bar);
         let (done, total) = (self.bar.position(), self.bar.length().unwrap_or(0));
         let is_due = match self.kind {
             ProgressKind::Auto | ProgressKind::None => return,
@@ -129,7 +129,8 @@ impl FrameProgress {
         let left = total.saturating_sub(done) as f64 / rate;
         let left = if left.is_finite() { left } else { 0.0 };
         let line = format!(
-            "{done} of {total} frames, {rate:.1} frames/s, {:.0} megapixels/s, {} left",
+            "{done} of {}, {rate:.1} frames/s, {:.0} megapixels/s, {} left",
+            count(total, "frame"),
             rate * self.megapixels,
             duration(Duration::from_secs_f64(left.min(1e9)))
         );
@@ -176,6 +177,12 @@ pub(super) fn warn(message: impl Display) {
 fn readable(message: &impl Display) -> String {
     let shown = |c| if c == '\n' { c } else { printable(c) };
     message.to_string().chars().map(shown).collect()
+}
+
+/// A number of things: `1 frame`, `2 frames`.
+pub(super) fn count(number: u64, noun: &str) -> String {
+    let plural = if number == 1 { "" } else { "s" };
+    format!("{number} {noun}{plural}")
 }
 
 /// Formats a time in milliseconds or seconds.

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use crate::table::{FormatError, Spec, TableError, default_path};
+use super::table_path::default_path;
+use crate::table::{FormatError, Spec, TableError};
 
 /// Returns the error, its message extended by what the user can do about it.
 pub(super) fn with_remedy(error: &TableError) -> anyhow::Error {

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use clap::Args;
 
+use super::misuse::misuse;
 use super::stdio::print;
 use crate::scene::{Builtin, builtins};
 
@@ -40,9 +41,11 @@ fn builtin(name: &str) -> anyhow::Result<&'static str> {
     let scene = builtins().iter().find(|scene| scene.name() == name);
     scene.map(Builtin::toml).ok_or_else(|| {
         let names: Vec<_> = builtins().iter().map(Builtin::name).collect();
-        anyhow::anyhow!(
-            "there is no built-in scene {name}; expected one of {}",
+        let meant =
+            Builtin::meant(name).map_or(String::new(), |name| format!("; did you mean {name}?"));
+        misuse(format!(
+            "there is no built-in scene {name}{meant} (the scenes are {})",
             names.join(", ")
-        )
+        ))
     })
 }

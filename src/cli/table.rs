@@ -13,8 +13,9 @@ use super::misuse::misuse;
 use super::progress::{Report, duration};
 use super::remedy::with_remedy;
 use super::stdio::StdoutError;
+use super::table_path::default_path;
 use super::threads::{ThreadArgs, start_threads};
-use super::writable;
+use super::writable::{self, OUTPUT};
 use crate::table::{self, ChartNodes, Metadata, Spec, Table, TableError, format};
 
 /// Make a table of all light rays, or inspect or verify one
@@ -28,7 +29,7 @@ pub(super) struct TableArgs {
     /// Which table to make
     #[arg(value_name = "NAME", default_value = DEFAULT_TABLE, value_parser = PossibleValuesParser::new(Spec::NAMES))]
     name: String,
-    /// Where to write the table [default: tables/NAME.table under the current folder]
+    /// Where to write the table [default: NAME.table in the folder tables if there is one, else in the user's cache]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Replace the file if it exists
@@ -71,14 +72,14 @@ pub(super) fn run(args: &TableArgs, report: Report) -> anyhow::Result<()> {
 
 fn make(args: &TableArgs, report: Report) -> anyhow::Result<()> {
     let spec = method::spec(&args.name)?;
-    let default = || table::default_path(&args.name);
+    let default = || default_path(&args.name);
     let path = args.output.clone().unwrap_or_else(default);
     if path == Path::new("-") {
         return Err(misuse(
             "a table cannot go to the standard output; name a file with -o",
         ));
     }
-    writable::check_with_parents(&path)?;
+    writable::check(&path, OUTPUT)?;
     if !args.force && is_made(&path, &spec)? {
         report.note(format_args!(
             "{}: the table {} is already there; nothing to do",
@@ -189,8 +190,19 @@ impl<'a> Inspection<'a> {
     }
 }
 
+/// Opens a table that the command line names.
+///
+/// # Errors
+/// A misuse if it is not there; a table that cannot be read.
+fn open(file: &Path) -> anyhow::Result<Table> {
+    Table::open(file).map_err(|error| match error {
+        TableError::Missing { .. } => misuse(with_remedy(&error).to_string()),
+        _ => with_remedy(&error),
+    })
+}
+
 fn inspect(file: &Path, json: bool) -> anyhow::Result<()> {
-    let table = Table::open(file).map_err(|error| with_remedy(&error))?;
+    let table = open(file)?;
     let inspection = Inspection::new(table.metadata(), table.bytes().len());
     let mut stdout = io::stdout().lock();
     let printed = if json {
@@ -204,7 +216,7 @@ fn inspect(file: &Path, json: bool) -> anyhow::Result<()> {
 }
 
 fn verify(file: &Path, report: Report) -> anyhow::Result<()> {
-    let table = Table::open(file).map_err(|error| with_remedy(&error))?;
+    let table = open(file)?;
     let metadata = table.metadata();
     let anew = method::make(&metadata.spec, report)?;
     let measured = table::measure(&metadata.spec, &table.lookup());

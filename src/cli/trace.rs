@@ -9,7 +9,7 @@ use clap::Args;
 use super::destination::stdout_onto_input;
 use super::method::{DEFAULT_TABLE, Method, MethodArgs};
 use super::misuse::misuse;
-use super::progress::{Report, warn};
+use super::progress::{Report, count, warn};
 use super::rays::RayReader;
 use super::stdio::{StdoutError, is_stdout};
 use super::threads::start_threads;
@@ -88,8 +88,13 @@ fn open(input: Option<&Path>) -> anyhow::Result<(Box<dyn BufRead>, String)> {
     match input {
         Some(path) if path != Path::new("-") => {
             let name = path.display().to_string();
-            let file = File::open(path)
-                .map_err(|error| anyhow::anyhow!("{name}: the rays cannot be read: {error}"))?;
+            let file = File::open(path).map_err(|error| {
+                let text = format!("{name}: the rays cannot be read: {error}");
+                match error.kind() {
+                    io::ErrorKind::NotFound => misuse(text),
+                    _ => anyhow::anyhow!(text),
+                }
+            })?;
             check_is_not_written(&file, path)?;
             Ok((Box::new(BufReader::with_capacity(BUFFER, file)), name))
         }
@@ -156,11 +161,19 @@ fn trace(
             }
         }
     }
-    anyhow::ensure!(
-        refused == 0,
-        "{refused} of {rows} rows do not hold a ray that can be followed; the others are traced"
-    );
-    Ok(())
+    match refused {
+        0 => Ok(()),
+        _ if refused == rows => anyhow::bail!(
+            "none of {} holds a ray that can be followed",
+            count(rows, "row")
+        ),
+        1 => anyhow::bail!(
+            "1 of {rows} rows holds no ray that can be followed; the others are traced"
+        ),
+        _ => anyhow::bail!(
+            "{refused} of {rows} rows hold no ray that can be followed; the others are traced"
+        ),
+    }
 }
 
 /// Writes one row. `{:?}` prints the shortest decimal that reads back to the same number, and the angle has 17

@@ -1,30 +1,15 @@
 //! Whether a file can be written, checked before the work that makes its content.
 
 use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::bail;
 use bytesize::ByteSize;
 
+use crate::output::{check_writable, led_to};
+
 /// The option that names the output, in every verb.
 pub(super) const OUTPUT: &str = "-o";
-
-/// Checks that `path`, which `option` names, can be written, in a folder that exists.
-///
-/// # Errors
-/// Why it cannot.
-pub(super) fn check(path: &Path, option: &str) -> anyhow::Result<()> {
-    check_in(folder_of(path), path, option)
-}
-
-/// Checks that `path` can be written, its folder being made where it is missing.
-///
-/// # Errors
-/// Why it cannot.
-pub(super) fn check_with_parents(path: &Path) -> anyhow::Result<()> {
-    check_in(existing(folder_of(path)), path, OUTPUT)
-}
 
 /// Checks that files can be written to a folder, which is made where it is missing.
 ///
@@ -32,7 +17,9 @@ pub(super) fn check_with_parents(path: &Path) -> anyhow::Result<()> {
 /// Why they cannot.
 pub(super) fn check_folder(folder: &Path) -> anyhow::Result<()> {
     let folder = or_current(folder);
-    check_folder_of(existing(folder), folder, OUTPUT)
+    // Links that lead in a circle are the system's to refuse.
+    let led_to = led_to(folder).unwrap_or_else(|_| folder.to_owned());
+    check_folder_of(existing(&led_to), folder, OUTPUT)
 }
 
 /// The folder, or the nearest above it that exists.
@@ -57,21 +44,35 @@ fn or_current(folder: &Path) -> &Path {
     }
 }
 
-fn check_in(folder: &Path, path: &Path, option: &str) -> anyhow::Result<()> {
+/// Checks that `path`, which `option` names, can be written. Its folder is made where it is missing, later.
+///
+/// # Errors
+/// Why it cannot.
+pub(super) fn check(path: &Path, option: &str) -> anyhow::Result<()> {
     match fs::metadata(path) {
-        Ok(kind) if kind.is_dir() => {
-            bail!(
-                "{} is a folder; give {option} a file's name",
-                path.display()
-            )
-        }
+        Ok(kind) if kind.is_dir() => bail!(
+            "{} is a folder; give {option} a file's name",
+            path.display()
+        ),
         // A file is replaced by renaming, which would remove a device or a pipe.
         Ok(kind) if !kind.is_file() => bail!(
             "{} is not a regular file; choose another file with {option}",
             path.display()
         ),
-        _ => check_folder_of(folder, path, option),
+        _ => {}
     }
+    let cannot = |error| {
+        anyhow::anyhow!(
+            "{}: the file cannot be written ({error}); choose another file with {option}",
+            path.display()
+        )
+    };
+    // The file that a link leads to is the one that is written.
+    let led_to = led_to(path).map_err(cannot)?;
+    if led_to.exists() {
+        check_writable(&led_to).map_err(cannot)?;
+    }
+    check_folder_of(existing(folder_of(&led_to)), path, option)
 }
 
 /// Checks that files can be made in `folder`, for `path`.
@@ -83,9 +84,6 @@ fn check_folder_of(folder: &Path, path: &Path, option: &str) -> anyhow::Result<(
         }
         // Rights, full disks and read-only mounts are the system's to judge: a nameless file leaves nothing behind.
         Ok(_) => tempfile::tempfile_in(folder).map(drop),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => bail!(
-            "{name}: the folder {place} does not exist; make it first, or choose another place with {option}"
-        ),
         Err(error) => Err(error),
     };
     made.map_err(|error| {
@@ -111,7 +109,7 @@ pub(super) fn free_space(folder: &Path) -> Option<u64> {
 /// # Errors
 /// There is not.
 pub(super) fn check_space(path: &Path, bytes: u64) -> anyhow::Result<()> {
-    let folder = folder_of(path);
+    let folder = existing(folder_of(path));
     match free_space(folder) {
         Some(free) if bytes > free => bail!(
             "{}: about {} are needed there, and {} are free; make room, choose another place with -o, or fewer frames \
@@ -135,25 +133,16 @@ pub(super) fn same_file(a: &Path, b: &Path) -> bool {
 /// Whether both paths lead to the same place, whether or not a file exists there.
 pub(super) fn same_place(a: &Path, b: &Path) -> bool {
     let place = |path: &Path| {
-        let path = follow_links(path);
-        Some((
-            fs::canonicalize(folder_of(&path)).ok()?,
-            path.file_name()?.to_owned(),
-        ))
+        let path = led_to(path).ok()?;
+        let folder = folder_of(&path);
+        let there = existing(folder);
+        let below = folder.strip_prefix(there).unwrap_or(folder);
+        Some(
+            fs::canonicalize(there)
+                .ok()?
+                .join(below)
+                .join(path.file_name()?),
+        )
     };
     same_file(a, b) || (place(a).is_some() && place(a) == place(b))
-}
-
-/// What a path leads to through symbolic links, whether or not a file exists there.
-fn follow_links(path: &Path) -> PathBuf {
-    // As many as Linux follows.
-    const MOST_LINKS: usize = 40;
-    let mut path = path.to_owned();
-    for _ in 0..MOST_LINKS {
-        let Ok(link) = fs::read_link(&path) else {
-            break;
-        };
-        path = folder_of(&path).join(link);
-    }
-    path
 }

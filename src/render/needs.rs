@@ -28,6 +28,8 @@ pub struct Needs {
     pub sensitivity: f64,
     /// The built-in tables, coarsest first.
     pub tables: Vec<Candidate>,
+    /// The frame whose needs these are; 1 for those of a scene.
+    pub frame: i64,
 }
 
 /// A built-in table, and whether it is accurate enough for a scene.
@@ -45,6 +47,9 @@ pub struct Candidate {
 }
 
 impl Needs {
+    /// The most frames of an animation that decide which table it needs.
+    pub const SAMPLED: u32 = 9;
+
     /// Computes what `scene` needs for a frame in some form.
     pub fn new(scene: &Scene, view: &View, form: Form) -> Self {
         let spec = CurveSpec::new(scene, view, scene.tolerance());
@@ -69,26 +74,28 @@ impl Needs {
             curve_spec: spec,
             sensitivity,
             tables: Spec::NAMES.into_iter().filter_map(candidate).collect(),
+            frame: 1,
         }
     }
 
-    /// Computes what an animation needs: the needs of the most sensitive of up to nine evenly spaced frames. They
+    /// Computes what an animation needs: the needs of the most sensitive of up to
+    /// [`Self::SAMPLED`] evenly spaced frames. They
     /// depend on the animation alone, so that one table serves all its frames.
     ///
     /// # Errors
     /// Returns the error of the first of these frames if none of them can be built.
     pub fn of_animation(animation: &Animation, form: Form) -> Result<Self, SceneError> {
-        const SAMPLED: u64 = 9;
-        let last = u64::from(animation.frames());
+        let (first, span) = (animation.first(), i64::from(animation.frames()) - 1);
         let mut most: Option<Self> = None;
-        let mut before = 0;
+        let mut before = None;
         let mut refused = None;
-        for place in 0..SAMPLED {
-            let number = (1 + (last - 1) * place / (SAMPLED - 1)) as u32;
-            if number == before {
+        let sampled = i64::from(Self::SAMPLED);
+        for place in 0..sampled {
+            let number = first + span * place / (sampled - 1);
+            if before == Some(number) {
                 continue;
             }
-            before = number;
+            before = Some(number);
             // Skips invalid frames. They are reported where they are drawn.
             let scene = match animation.frame(number) {
                 Ok(scene) => scene,
@@ -97,7 +104,10 @@ impl Needs {
                     continue;
                 }
             };
-            let needs = Self::new(&scene, &View::new(&scene), form);
+            let needs = Self {
+                frame: number,
+                ..Self::new(&scene, &View::new(&scene), form)
+            };
             if most
                 .as_ref()
                 .is_none_or(|most| needs.sensitivity > most.sensitivity)
@@ -106,8 +116,9 @@ impl Needs {
             }
         }
         let none = SceneError::NoFrame {
-            number: 1,
-            frames: animation.frames(),
+            number: first,
+            first,
+            last: animation.last(),
         };
         most.ok_or(refused.unwrap_or(none))
     }

@@ -251,13 +251,13 @@ impl<A: SweptAngles> Renderer<A> {
         &self,
         animation: &Animation,
         form: Form,
-        numbers: impl ExactSizeIterator<Item = u32> + Send,
+        numbers: impl Iterator<Item = i64> + Clone + Send,
         done: impl Fn(DrawnFrame<'_>) -> Result<(), E> + Sync,
     ) -> Result<(), E> {
         let (sky, read) = &self.source;
         let source = read.read().filter(|_| sky.as_ref() == animation.sky());
         let frames = Curved::new(animation, &self.angles, source);
-        let sharing = Sharing::fastest(numbers.len() as u64, u64::MAX);
+        let sharing = Sharing::fastest(numbers.clone().count() as u64, u64::MAX);
         batch::draw(&frames, form, numbers, sharing, |_| true, done)
     }
 }

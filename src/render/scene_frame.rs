@@ -17,6 +17,8 @@ use crate::scene::{Scene, View};
 /// What a frame took, and how accurate it is.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FrameReport {
+    /// The time for the memory of the frame.
+    pub memory: Duration,
     /// The time for curves that no frame before had.
     pub curves: Duration,
     /// The time for the pixels.
@@ -69,6 +71,7 @@ impl<A: SweptAngles> SceneFrame<'_, A> {
             self.draw_from_curves(workspace, target)?;
         }
         Ok(FrameReport {
+            memory: Duration::ZERO,
             curves: Duration::ZERO,
             pixels: start.elapsed(),
             error,

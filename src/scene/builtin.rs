@@ -16,6 +16,14 @@ impl Builtin {
         builtins().iter().find(|builtin| builtin.name == name)
     }
 
+    /// The name of the built-in scene that was probably meant by `name`, of which at most a third is wrong.
+    pub fn meant(name: &str) -> Option<&'static str> {
+        let names = builtins().iter().map(Self::name);
+        let nearest = names.min_by_key(|known| strsim::osa_distance(name, known))?;
+        let wrong = strsim::osa_distance(name, nearest);
+        (3 * wrong <= nearest.len()).then_some(nearest)
+    }
+
     /// Its name.
     pub fn name(&self) -> &'static str {
         self.name
@@ -90,7 +98,7 @@ mod tests {
                 Animation::from_toml(&animation.to_toml()).unwrap(),
                 animation
             );
-            for number in 1..=animation.frames() {
+            for number in 1..=animation.last() {
                 animation.check(number).unwrap();
             }
             assert!(builtin.toml().starts_with("# "), "{}", builtin.name());
@@ -101,6 +109,22 @@ mod tests {
             );
         }
         assert_eq!(builtins()[0].name(), DEFAULT_SCENE);
+    }
+
+    #[test]
+    fn a_misspelled_name_leads_to_the_one_that_was_meant() {
+        for (name, meant) in [
+            ("orbt", Some("orbit")),
+            ("clasic", Some("classic")),
+            ("classc", Some("classic")),
+            ("lit_orbit", Some("lit-orbit")),
+            ("Edge-on", Some("edge-on")),
+            ("gird", Some("grid")),
+            ("foo", None),
+            ("mine.toml", None),
+        ] {
+            assert_eq!(Builtin::meant(name), meant, "{name}");
+        }
     }
 
     #[test]
@@ -167,7 +191,7 @@ mod tests {
     fn the_flyby_passes_above_the_disk_and_the_hole_drifts_through_the_picture() {
         let film = Animation::load("flyby").unwrap();
         let mut before = f64::NEG_INFINITY;
-        for number in 1..=film.frames() {
+        for number in 1..=film.last() {
             let scene = film.check(number).unwrap();
             assert!((25.0..38.0).contains(&scene.radius()) && scene.camera().position.z > 7.0);
             let camera = scene.camera();
@@ -188,7 +212,7 @@ mod tests {
     fn the_plunge_ends_above_the_photon_sphere_with_the_hole_in_view() {
         let plunge = Animation::load("plunge").unwrap();
         let mut before = f64::INFINITY;
-        for number in 1..=plunge.frames() {
+        for number in 1..=plunge.last() {
             let scene = plunge.check(number).unwrap();
             assert!(scene.radius() <= before && scene.radius() > 1.5);
             before = scene.radius();

@@ -101,6 +101,14 @@ impl Scene {
         Self::at_radius(camera, radius, self.disk, self.light, self.sky, settings)
     }
 
+    /// The same scene, its camera turned about its viewing direction by so many degrees; by 0, to the last bit.
+    pub(super) fn rolled(mut self, degrees: f64) -> Self {
+        if degrees != 0.0 {
+            self.camera = self.camera.rolled(degrees);
+        }
+        self
+    }
+
     /// The same scene as a picture of another size; the vertical field of view stays.
     ///
     /// # Errors

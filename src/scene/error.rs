@@ -27,26 +27,37 @@ pub enum SceneError {
         /// What is allowed, and why.
         reason: String,
     },
+    /// A value that was to take the place of one in a scene's file is not allowed.
+    #[error("{from}: {problem}")]
+    Override {
+        /// Where the value comes from, such as an option of the command line.
+        from: String,
+        /// What is wrong.
+        problem: String,
+    },
     /// Something is wrong in one frame, or in the keyframe at that frame.
     #[error("frame {number}: {error}")]
     InFrame {
         /// The frame's number.
-        number: u32,
+        number: i64,
         /// What is wrong.
         error: Box<SceneError>,
     },
     /// The animation has no such frame.
-    #[error("there is no frame {number}: the frames are 1 to {frames}")]
+    #[error("there is no frame {number}: the frames are {first} to {last}")]
     NoFrame {
         /// The number asked for.
-        number: u32,
-        /// The number of frames.
-        frames: u32,
+        number: i64,
+        /// The first frame's number.
+        first: i64,
+        /// The last frame's number.
+        last: i64,
     },
     /// No built-in scene and no file has this name.
     #[error(
-        "{} is neither a built-in scene ({}) nor a file",
+        "{} is neither a file nor a built-in scene{} (these are {})",
         path.display(),
+        path.to_str().and_then(Builtin::meant).map_or(String::new(), |name| format!("; did you mean {name}?")),
         builtins().iter().map(Builtin::name).collect::<Vec<_>>().join(", ")
     )]
     Unknown {
@@ -106,7 +117,7 @@ impl SceneError {
     }
 
     /// The same error, of the frame `number`.
-    pub(super) fn in_frame(self, number: u32) -> Self {
+    pub(super) fn in_frame(self, number: i64) -> Self {
         Self::InFrame {
             number,
             error: Box::new(self),

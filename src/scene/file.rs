@@ -13,41 +13,33 @@ use super::validate;
 use super::values::{DEFAULT_TOLERANCE, ImageSettings, Light, Tone};
 use crate::quotation::beginning;
 
+mod camera;
 mod sky;
 mod write;
+
+pub(super) use camera::{CameraTable, Fov, Place};
 
 /// The whole file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SceneFile {
+    #[serde(default)]
     pub(super) camera: CameraTable,
     pub(super) disk: Option<DiskTable>,
     #[serde(default, deserialize_with = "sky::sky")]
     pub(super) sky: Option<Arc<Sky>>,
+    #[serde(default)]
     pub(super) image: ImageTable,
     pub(super) animation: Option<AnimationTable>,
-}
-
-/// `[camera]`.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct CameraTable {
-    /// Left out where the animation sets it.
-    #[serde(default, deserialize_with = "maybe_three_numbers")]
-    pub(super) position: Option<[f64; 3]>,
-    #[serde(default, deserialize_with = "three_numbers")]
-    pub(super) focus: [f64; 3],
-    /// Its default depends on the animation.
-    #[serde(default, deserialize_with = "maybe_three_numbers")]
-    pub(super) up: Option<[f64; 3]>,
-    pub(super) fov: f64,
 }
 
 /// `[disk]`.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct DiskTable {
+    #[serde(default = "innermost")]
     pub(super) inner: f64,
+    #[serde(default = "default_outer")]
     pub(super) outer: f64,
     #[serde(default = "plus_z", deserialize_with = "three_numbers")]
     pub(super) normal: [f64; 3],
@@ -75,7 +67,9 @@ enum LightModel {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ImageTable {
+    #[serde(default = "default_width")]
     pub(super) width: i64,
+    #[serde(default = "default_height")]
     pub(super) height: i64,
     #[serde(default = "yes")]
     pub(super) antialias: bool,
@@ -89,6 +83,21 @@ pub(super) struct ImageTable {
     pub(super) bits: i64,
     #[serde(default, deserialize_with = "layers")]
     pub(super) layers: LayerSet,
+}
+
+impl Default for ImageTable {
+    fn default() -> Self {
+        Self {
+            width: default_width(),
+            height: default_height(),
+            antialias: true,
+            tolerance: DEFAULT_TOLERANCE,
+            exposure: 0.0,
+            tone: Tone::default(),
+            bits: one_byte(),
+            layers: LayerSet::default(),
+        }
+    }
 }
 
 /// How a quantity changes between keyframes.
@@ -107,6 +116,8 @@ pub(super) enum Interpolation {
 #[serde(deny_unknown_fields)]
 pub(super) struct AnimationTable {
     pub(super) frames: i64,
+    #[serde(default = "one")]
+    pub(super) first: i64,
     #[serde(default = "of_film")]
     pub(super) fps: f64,
     #[serde(default)]
@@ -114,6 +125,33 @@ pub(super) struct AnimationTable {
     pub(super) orbit: Option<OrbitTable>,
     #[serde(default)]
     pub(super) keyframe: Vec<KeyframeTable>,
+}
+
+impl AnimationTable {
+    /// Whether any quantity changes.
+    pub(super) fn moves(&self) -> bool {
+        let changes = |value: fn(&KeyframeTable) -> Option<[f64; 3]>| {
+            let mut values = self.keyframe.iter().filter_map(value);
+            let first = values.next();
+            values.any(|value| Some(value) != first)
+        };
+        let orbit = self.orbit.as_ref();
+        orbit.is_some_and(
+            |OrbitTable {
+                 radius,
+                 inclination,
+                 azimuth,
+             }| {
+                [radius, inclination, azimuth]
+                    .iter()
+                    .any(|span| span.from != span.to)
+            },
+        ) || changes(|keyframe| keyframe.position)
+            || changes(|keyframe| keyframe.focus)
+            || changes(|keyframe| keyframe.up)
+            || changes(|keyframe| keyframe.normal)
+            || changes(|keyframe| keyframe.fov.map(|fov| [fov; 3]))
+    }
 }
 
 /// `animation.orbit`: radius, and angles in degrees.
@@ -178,6 +216,26 @@ impl KeyframeTable {
 /// Writes the line of a key that has a value.
 fn line(f: &mut fmt::Formatter<'_>, key: &str, value: Option<impl Debug>) -> fmt::Result {
     value.map_or(Ok(()), |value| writeln!(f, "{key} = {value:?}"))
+}
+
+fn innermost() -> f64 {
+    validate::ISCO_RADIUS
+}
+
+fn default_outer() -> f64 {
+    12.0
+}
+
+fn default_width() -> i64 {
+    1920
+}
+
+fn default_height() -> i64 {
+    1080
+}
+
+fn one() -> i64 {
+    1
 }
 
 fn of_film() -> f64 {
@@ -246,8 +304,7 @@ impl SceneFile {
     /// # Errors
     /// [`SceneError::Toml`], with line and column.
     pub(super) fn parse(text: &str) -> Result<Self, SceneError> {
-        toml::from_str(text)
-            .map_err(|error| SceneError::toml(readable(error.to_string().trim_end())))
+        toml::from_str(text).map_err(|error| parser_error(&error))
     }
 
     /// The light of the disk, if there is any.
@@ -277,11 +334,18 @@ impl SceneFile {
     }
 }
 
+/// The error of the parser.
+pub(super) fn parser_error(error: &toml::de::Error) -> SceneError {
+    SceneError::toml(readable(error.to_string().trim_end()))
+}
+
 /// Makes the parser's message readable: it quotes lines of any length, and names types as Rust does.
 fn readable(message: &str) -> String {
     const LONGEST: usize = 200;
     let lines = message.lines().map(|line| {
         beginning(line, LONGEST)
+            .replace("missing field", "missing key")
+            .replace("unknown field", "unknown key")
             .replace("expected f64", "expected a number")
             .replace("expected i64", "expected a whole number")
             .replace("expected a boolean", "expected true or false")
@@ -305,7 +369,7 @@ mod tests {
     #[test]
     fn what_has_a_default_may_be_left_out() {
         let file = SceneFile::parse(SHORTEST).unwrap();
-        assert_eq!(file.camera.position, Some([20.0, 0.0, 5.0]));
+        assert_eq!(file.camera.position(), Some([20.0, 0.0, 5.0]));
         assert_eq!(file.camera.focus, [0.0; 3]);
         assert_eq!((file.camera.up, file.animation), (None, None));
         assert_eq!(file.disk.unwrap().normal, [0.0, 0.0, 1.0]);
@@ -314,28 +378,48 @@ mod tests {
     }
 
     #[test]
-    fn what_has_none_may_not_and_the_message_names_it() {
-        for line in [
-            "fov = 40",
-            "inner = 3",
-            "outer = 12",
-            "width = 64",
-            "height = 36",
+    fn a_table_is_as_good_without_its_defaults_as_with_them() {
+        let least = SceneFile::parse("camera.position = [20, 0, 5]\n[disk]").unwrap();
+        let defaults = "[camera]\nposition = [20, 0, 5]\nfov = 30\n[disk]\ninner = 3\nouter = 12\n[image]\n\
+                        width = 1920\nheight = 1080\nantialias = true\ntolerance = 0.001\nbits = 8\n";
+        assert_eq!(least, SceneFile::parse(defaults).unwrap());
+        let in_table = SceneFile::parse("[camera]\nposition = [20, 0, 5]\n[disk]\n[image]");
+        assert_eq!(in_table.unwrap(), least);
+        assert_eq!(
+            SceneFile::parse("[disk]").unwrap().camera,
+            CameraTable::default()
+        );
+    }
+
+    #[test]
+    fn what_has_no_default_is_named_with_its_table() {
+        let orbit = "orbit = { radius = 30, inclination = 80, azimuth = 0 }";
+        for (without, key) in [
+            (format!("[animation]\n{orbit}\n"), "frames"),
+            (
+                "[animation]\nframes = 9\norbit = { radius = 30, azimuth = 0 }\n".into(),
+                "inclination",
+            ),
+            (
+                "[animation]\nframes = 9\n[[animation.keyframe]]\nfov = 3\n".into(),
+                "frame",
+            ),
         ] {
-            let key = line.split(' ').next().unwrap();
-            let message = message(&SHORTEST.replace(line, ""));
+            let message = message(&format!("{SHORTEST}{without}"));
             assert!(
-                message.contains(&format!("`{key}`")) && message.contains("line"),
+                message.contains(&format!("missing key `{key}`")),
                 "{message}"
             );
+            assert!(message.contains("line 1"), "{message}");
+            assert!(!message.contains("line 1, "), "{message}");
         }
     }
 
     #[test]
     fn unknown_keys_and_wrong_types_are_refused_with_their_place() {
-        let unknown = message(&SHORTEST.replace("fov = 40", "fov = 40\nroll = 3"));
+        let unknown = message(&SHORTEST.replace("fov = 40", "fov = 40\ntilt = 3"));
         assert!(
-            unknown.contains("`roll`") && unknown.contains("line 4, column 1"),
+            unknown.contains("`tilt`") && unknown.contains("line 4, column 1"),
             "{unknown}"
         );
         let unknown = message(&SHORTEST.replace("[disk]", "[light]\n[disk]"));

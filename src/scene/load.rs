@@ -1,6 +1,6 @@
 //! Scenes and animations from text, files and the built-in ones.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 use std::sync::Arc;
@@ -10,6 +10,7 @@ use super::builtin::Builtin;
 use super::checked::Scene;
 use super::error::SceneError;
 use super::file::SceneFile;
+use super::overrides::{self, Override};
 
 /// The longest file that is read as a scene, in bytes.
 const LONGEST_FILE: u64 = 1 << 20;
@@ -21,7 +22,7 @@ impl Scene {
     /// [`SceneError::Toml`] with line and column where the text is not TOML, or a key is missing, unknown or of the
     /// wrong type; [`SceneError::Value`] for a value that is not allowed.
     pub fn from_toml(text: &str) -> Result<Self, SceneError> {
-        Animation::from_toml(text)?.frame(1)
+        Animation::from_toml(text)?.first_frame()
     }
 
     /// The built-in scene of this name; [`builtins`](super::builtins) lists them.
@@ -43,7 +44,9 @@ impl Scene {
     /// [`SceneError::Unknown`] where there is neither, [`SceneError::Read`] for a file that cannot be read,
     /// [`SceneError::InFile`] for a file that holds no valid scene.
     pub fn load(path_or_name: impl AsRef<Path>) -> Result<Self, SceneError> {
-        load(path_or_name.as_ref(), |file| Animation::new(file)?.frame(1))
+        load(path_or_name.as_ref(), &[], |file| {
+            Animation::new(file)?.first_frame()
+        })
     }
 
     /// The scene's TOML form with every key written out. [`Scene::from_toml`] reads the same scene back.
@@ -68,18 +71,31 @@ impl Animation {
     /// # Errors
     /// Those of [`Scene::load`].
     pub fn load(path_or_name: impl AsRef<Path>) -> Result<Self, SceneError> {
-        load(path_or_name.as_ref(), Self::new)
+        Self::load_with(path_or_name, &[])
+    }
+
+    /// The same, with values that take the place of some of the scene's own.
+    ///
+    /// # Errors
+    /// Those of [`Scene::load`], and [`SceneError::Override`] for a value that is not allowed.
+    pub fn load_with(
+        path_or_name: impl AsRef<Path>,
+        overrides: &[Override],
+    ) -> Result<Self, SceneError> {
+        load(path_or_name.as_ref(), overrides, Self::new)
     }
 }
 
-/// Makes something of the built-in scene of this name, or else of the file at this path. Names of files in it are
-/// relative to its folder.
+/// Makes something of the built-in scene of this name, or else of the file at this path. Names of files in it, and in
+/// the overrides, are relative to its folder.
 fn load<T>(
     path: &Path,
+    overrides: &[Override],
     make: impl Fn(SceneFile) -> Result<T, SceneError>,
 ) -> Result<T, SceneError> {
     if let Some(builtin) = path.to_str().and_then(Builtin::named) {
-        return make(SceneFile::parse(builtin.toml())?);
+        let made = overrides::parse(builtin.toml(), overrides).and_then(make);
+        return made.map_err(|error| overrides::blame(error, overrides));
     }
     let text = read(path).map_err(|error| {
         let path = path.to_owned();
@@ -89,31 +105,36 @@ fn load<T>(
             SceneError::Read { path, error }
         }
     })?;
-    let made = SceneFile::parse(&text).and_then(|mut file| {
+    let made = overrides::parse(&text, overrides).and_then(|mut file| {
         if let (Some(sky), Some(folder)) = (&mut file.sky, path.parent()) {
             Arc::make_mut(sky).resolve(folder);
         }
         make(file)
     });
-    made.map_err(|error| SceneError::InFile {
-        path: path.to_owned(),
-        error: Box::new(error),
+    made.map_err(|error| match overrides::blame(error, overrides) {
+        error @ SceneError::Override { .. } => error,
+        error => SceneError::InFile {
+            path: path.to_owned(),
+            error: Box::new(error),
+        },
     })
 }
 
 /// Reads a file of at most [`LONGEST_FILE`] bytes: a device may have no end.
 fn read(path: &Path) -> io::Result<String> {
-    let mut text = String::new();
+    let wrong = |problem| io::Error::new(io::ErrorKind::InvalidData, problem);
+    if fs::metadata(path)?.is_dir() {
+        return Err(wrong("it is a folder, and a scene is a TOML file"));
+    }
+    let mut bytes = Vec::new();
     let length = File::open(path)?
         .take(LONGEST_FILE + 1)
-        .read_to_string(&mut text)?;
-    if length as u64 > LONGEST_FILE {
-        return Err(io::Error::new(
-            io::ErrorKind::InvalidData,
-            "it is over 1 MiB long, which no scene is",
-        ));
+        .read_to_end(&mut bytes)?;
+    // A long picture is no text in its first part already, which says more than its length.
+    if length as u64 > LONGEST_FILE && str::from_utf8(&bytes).is_ok() {
+        return Err(wrong("it is over 1 MiB long, which no scene is"));
     }
-    Ok(text)
+    String::from_utf8(bytes).map_err(|_| wrong("it is not a text in UTF-8, as a scene's TOML is"))
 }
 
 #[cfg(test)]

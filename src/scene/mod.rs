@@ -8,13 +8,16 @@
 //! ```toml
 //! [camera]
 //! position = [29.5442, 0.0, 5.2094]  # required; the hole is at the origin; 1 < r ≤ 1e15
+//! # or, in its place: radius = 30.0, inclination = 80.0 (from +z), azimuth = 0.0 (from +x; default: 0), in degrees
 //! focus    = [0.0, 0.0, 0.0]         # default: the hole
-//! up       = [0.0, 0.0, 1.0]         # default: +z
-//! fov      = 30.0                    # required; vertical field of view, degrees, 0 < fov < 180
+//! up       = [0.0, 0.0, 1.0]         # default: +z; beside angles, where the inclination falls
+//! roll     = 0.0                     # default; degrees; positive turns the picture's content clockwise
+//! fov      = 30.0                    # default; vertical field of view, degrees, 0 < fov < 180
+//! # or, in its place: fov_horizontal = 51.0
 //!
 //! [disk]
-//! inner  = 3.0                       # required; ≥ 3, the innermost stable circular orbit
-//! outer  = 12.0                      # required; > inner
+//! inner  = 3.0                       # default; ≥ 3, the innermost stable circular orbit
+//! outer  = 12.0                      # default; > inner
 //! normal = [0.0, 0.0, 1.0]           # default: +z
 //!
 //! [disk.light]                       # default: none, the picture is a mask
@@ -33,8 +36,8 @@
 //! grid     = 15.0                    # default: none; lines every so many degrees; 1 to 90, divides 180
 //!
 //! [image]
-//! width  = 1920                      # required
-//! height = 1080                      # required
+//! width  = 1920                      # default
+//! height = 1080                      # default
 //! antialias = true                   # default; false: each pixel is what its centre sees, 255 or 0
 //! tolerance = 0.001                  # default; an edge's largest error, in pixels; 0 < tolerance ≤ 1
 //! exposure = 0.0                     # default; stops: pictures show light times 2 to this power; -100 to 100
@@ -42,6 +45,10 @@
 //! bits = 8                           # default; or 16, of a PNG picture's samples
 //! layers = ["radius", "redshift"]    # default: none; the data in .exr and .npz files
 //! ```
+//!
+//! A camera at radius r, inclination i and azimuth a is at `r (sin i cos a, sin i sin a, cos i)`. A roll turns it about
+//! its viewing direction, right-handed about the backward axis as in most 3D programs: counterclockwise as seen from
+//! behind the camera. An [`Override`] gives a key of a file another value.
 //!
 //! Lengths are in Schwarzschild radii. Directions have any length but zero. The layers are `coverage`, `order`,
 //! `radius`, `azimuth`, `redshift`, `emission_cosine`, `temperature`, `colour`, `sky` and `sky_uv` ([`Layer`]);
@@ -55,6 +62,7 @@
 //! A moving scene has one more table, `[animation]`, which [`animation`] describes; as a [`Scene`] it is its first
 //! frame. Light, sky, exposure and tone are those of the whole film.
 
+mod angles;
 pub mod animation;
 mod builtin;
 mod checked;
@@ -62,6 +70,7 @@ mod error;
 mod file;
 mod layers;
 mod load;
+mod overrides;
 mod sky;
 mod validate;
 mod values;
@@ -73,6 +82,7 @@ pub use builtin::{Builtin, DEFAULT_SCENE, builtins};
 pub use checked::Scene;
 pub use error::SceneError;
 pub use layers::{Layer, LayerSet};
+pub use overrides::Override;
 pub use sky::{DEFAULT_STAR_RADIUS, Sky, SkyFile, StarSource, Stars};
 pub use validate::{
     FARTHEST_CAMERA, HORIZON_RADIUS, ISCO_RADIUS, MAX_EXPOSURE, MAX_GRID, MAX_IMAGE_SIDE,

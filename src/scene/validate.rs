@@ -1,5 +1,7 @@
 //! What the values of a scene may be.
 
+use std::fmt::Debug;
+
 use glam::DVec3;
 
 use super::error::SceneError;
@@ -131,14 +133,18 @@ pub(super) fn image_size(width: i64, height: i64) -> Result<ImageSize, SceneErro
     })
 }
 
-/// Checks the radius of a camera's position, which `key` names.
+/// Checks the radius of a camera, which the `value` of `key` gives.
 ///
 /// # Errors
 /// [`SceneError::Value`]
-pub(super) fn radius(key: &'static str, position: DVec3, radius: f64) -> Result<(), SceneError> {
+pub(super) fn radius(
+    key: &'static str,
+    value: impl Debug + Copy,
+    radius: f64,
+) -> Result<(), SceneError> {
     let check = |is_allowed, reason: &str| {
         let reason = format_args!("the camera is at radius {radius:?}; {reason}");
-        SceneError::check(is_allowed, key, position.to_array(), reason)
+        SceneError::check(is_allowed, key, value, reason)
     };
     check(
         radius > HORIZON_RADIUS,
@@ -151,7 +157,7 @@ pub(super) fn radius(key: &'static str, position: DVec3, radius: f64) -> Result<
 }
 
 fn check_camera(camera: &Camera, radius: f64) -> Result<(), SceneError> {
-    self::radius("camera.position", camera.position, radius)?;
+    self::radius("camera.position", camera.position.to_array(), radius)?;
     let view = camera.focus - camera.position;
     SceneError::check(
         norm(view) > SAME_POINT * radius,
@@ -165,13 +171,20 @@ fn check_camera(camera: &Camera, radius: f64) -> Result<(), SceneError> {
         camera.up.to_array(),
         "this direction is parallel to the view from camera.position to camera.focus; give another one",
     )?;
-    let fov = camera.fov_degrees;
+    fov("camera.fov", camera.fov_degrees)
+}
+
+/// Checks a field of view, in degrees.
+///
+/// # Errors
+/// [`SceneError::Value`]
+pub(super) fn fov(key: &'static str, degrees: f64) -> Result<(), SceneError> {
     SceneError::check(
-        (NARROWEST_FOV..180.0).contains(&fov),
-        "camera.fov",
-        fov,
+        (NARROWEST_FOV..180.0).contains(&degrees),
+        key,
+        degrees,
         format_args!(
-            "a flat picture's vertical field of view is at least {NARROWEST_FOV:e} and below 180 degrees"
+            "a flat picture's field of view is at least {NARROWEST_FOV:e} and below 180 degrees"
         ),
     )
 }

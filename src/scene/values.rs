@@ -3,6 +3,7 @@
 use glam::DVec3;
 use serde::Deserialize;
 
+use super::angles::{outward_and_up, rolled_up};
 use super::layers::LayerSet;
 
 /// The largest error of an edge where none is given, in pixels: no 8-bit picture shows a thousandth of a pixel.
@@ -41,6 +42,44 @@ impl Camera {
             up: DVec3::Z,
             fov_degrees,
         }
+    }
+
+    /// A camera that looks at the hole from a radius, an inclination from +z and an azimuth from +x, in degrees. Up is
+    /// where the inclination falls: +z, and at the poles the azimuth's opposite or the azimuth.
+    ///
+    /// ```
+    /// use darkness::scene::Camera;
+    ///
+    /// // Face on.
+    /// let camera = Camera::at_angles(30.0, 0.0, 0.0, 40.0);
+    /// assert_eq!(camera.position.to_array(), [0.0, 0.0, 30.0]);
+    /// ```
+    pub fn at_angles(radius: f64, inclination: f64, azimuth: f64, fov_degrees: f64) -> Self {
+        let (outward, up) = outward_and_up(inclination, azimuth);
+        Self {
+            up,
+            ..Self::at(outward * radius, fov_degrees)
+        }
+    }
+
+    /// The same camera, turned about its viewing direction.
+    ///
+    /// As in most 3D programs, the turn is right-handed about the camera's backward axis: a positive angle turns the
+    /// camera counterclockwise as seen from behind it, and so the picture's content clockwise.
+    #[must_use]
+    pub fn rolled(self, degrees: f64) -> Self {
+        Self {
+            up: rolled_up(self.focus - self.position, self.up, degrees),
+            ..self
+        }
+    }
+
+    /// The vertical field of view of a picture of this size whose horizontal one is given, both in degrees:
+    /// `tan(vertical/2) = tan(horizontal/2) height/width`.
+    pub fn vertical_fov(horizontal_degrees: f64, size: ImageSize) -> f64 {
+        let half_width = libm::tan(horizontal_degrees.to_radians() / 2.0);
+        let aspect = f64::from(size.height) / f64::from(size.width);
+        2.0 * libm::atan(half_width * aspect).to_degrees()
     }
 }
 

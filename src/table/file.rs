@@ -71,11 +71,6 @@ pub enum TableError {
     },
 }
 
-/// Returns where the program keeps the table of a specification: `tables/NAME.table` under the current folder.
-pub fn default_path(name: &str) -> PathBuf {
-    Path::new("tables").join(format!("{name}.table"))
-}
-
 impl Table {
     /// Maps the table at `path` and checks every byte of it.
     ///
@@ -170,16 +165,12 @@ impl Table {
     /// [`TableError::Unwritable`]; then whatever was at `path` is unchanged.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), TableError> {
         let path = path.as_ref();
-        let folder = path
-            .parent()
-            .filter(|folder| !folder.as_os_str().is_empty());
-        folder
-            .map_or(Ok(()), std::fs::create_dir_all)
-            .and_then(|()| crate::output::write_whole(path, |file| file.write_all(self.bytes())))
-            .map_err(|source| TableError::Unwritable {
+        crate::output::write_whole(path, |file| file.write_all(self.bytes())).map_err(|source| {
+            TableError::Unwritable {
                 path: path.into(),
                 source,
-            })
+            }
+        })
     }
 
     /// Returns the table's specification and measured error.

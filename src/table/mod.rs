@@ -19,7 +19,7 @@ mod measure;
 mod spec;
 pub(crate) mod spline;
 
-pub use file::{Table, TableError, default_path};
+pub use file::{Table, TableError};
 pub use format::{FormatError, Metadata};
 pub use generate::RowProgress;
 pub use lookup::Lookup;

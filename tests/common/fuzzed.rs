@@ -110,8 +110,8 @@ pub(crate) fn scene(bytes: &[u8]) {
     if let Err(error) = Needs::of_animation(&small, Form::Grey8) {
         sentence(&error);
     }
-    let last = small.frames();
-    for number in BTreeSet::from([1, last / 2 + 1, last]) {
+    let (first, last) = (small.first(), small.last());
+    for number in BTreeSet::from([first, first + i64::from(small.frames()) / 2, last]) {
         if let Err(error) = small.check(number) {
             sentence(&error);
         }
@@ -152,8 +152,8 @@ pub(crate) fn frames(bytes: &[u8]) {
         Ok(&range),
         "{written}"
     );
-    let numbers: Vec<u32> = range.iter().take(MOST).collect();
-    assert!(numbers[0] >= 1 && numbers.is_sorted_by(|a, b| a < b));
+    let numbers: Vec<i64> = range.iter().take(MOST).collect();
+    assert!(Some(numbers[0]) == range.first() && numbers.is_sorted_by(|a, b| a < b));
     assert!(
         numbers
             .iter()
@@ -163,13 +163,10 @@ pub(crate) fn frames(bytes: &[u8]) {
         assert_eq!(range.count(), numbers.len() as u64);
         assert_eq!(numbers.last(), Some(&range.last()));
         // By the definition of a range.
-        let all = (1..=range.last().min(MOST as u32)).filter(|&number| range.contains(number));
-        assert!(
-            all.eq(numbers
-                .iter()
-                .copied()
-                .filter(|&number| number <= MOST as u32))
-        );
+        let first = range.first().unwrap();
+        let end = range.last().min(first + MOST as i64);
+        let all = (first..=end).filter(|&number| range.contains(number));
+        assert!(all.eq(numbers.iter().copied().filter(|&number| number <= end)));
     }
 }
 

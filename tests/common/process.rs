@@ -6,12 +6,14 @@ use std::process::Command;
 /// The program's executable file.
 pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_darkness");
 
-/// Returns a command that runs the program in a folder with these arguments, and with no table from the environment.
+/// Returns a command that runs the program in a folder with these arguments, and with no table from the environment or
+/// the user's cache: tables go to the folder `tables`.
 pub(crate) fn darkness(folder: &Path, args: &[&str]) -> Command {
     let mut command = Command::new(PROGRAM);
     command
         .current_dir(folder)
         .env_remove("DARKNESS_TABLE")
+        .env("DARKNESS_CACHE", "tables")
         .args(args);
     command
 }

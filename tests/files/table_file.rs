@@ -5,9 +5,7 @@
 use std::path::Path;
 
 use darkness::table::format::{CONVENTIONS, VERSION};
-use darkness::table::{
-    ChartNodes, FormatError, Metadata, Spec, SpecError, Table, TableError, default_path,
-};
+use darkness::table::{ChartNodes, FormatError, Metadata, Spec, SpecError, Table, TableError};
 
 use crate::fuzzed::crafted::{
     METADATA_AT, METADATA_LENGTH_AT, NUMBERS_LENGTH_AT, VERSION_AT, mend_preamble, sealed,
@@ -418,10 +416,6 @@ fn a_file_that_cannot_be_opened_is_named() {
         let text = error.to_string();
         assert!(text.starts_with(&path.display().to_string()), "{text}");
         assert!(!text.contains('`'), "a command in: {text}");
-    }
-    for name in Spec::NAMES {
-        let path = default_path(name);
-        assert_eq!(path, Path::new("tables").join(format!("{name}.table")));
     }
 }
 

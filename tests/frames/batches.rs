@@ -30,7 +30,7 @@ fn fastest(range: &FrameRange) -> Sharing {
 }
 
 /// The frames of a range, drawn on so many threads.
-fn drawn(frames: &impl Frames, range: &str, threads: usize) -> BTreeMap<u32, Vec<u8>> {
+fn drawn(frames: &impl Frames, range: &str, threads: usize) -> BTreeMap<i64, Vec<u8>> {
     let range: FrameRange = range.parse().unwrap();
     let all = Mutex::new(BTreeMap::new());
     let places = Mutex::new(Vec::new());

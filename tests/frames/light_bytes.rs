@@ -95,7 +95,7 @@ fn frames_of_a_batch_do_not_depend_on_each_other() {
         let layers = Form::Layers(layers_of(&animation.frame(1).unwrap()));
         let renderer = Renderer::new(table("standard"));
         for form in [Form::Rgb8, layers] {
-            let draw = |threads: usize, numbers: &[u32]| {
+            let draw = |threads: usize, numbers: &[i64]| {
                 let frames = Mutex::new(BTreeMap::new());
                 pool(threads)
                     .install(|| {

@@ -110,7 +110,7 @@ fn frames_of_an_animation_are_drawn_side_by_side() {
     let animation = Animation::load("orbit").unwrap();
     let renderer = Renderer::new(table("standard"));
     let drawn = Mutex::new(Vec::new());
-    let small: Vec<u32> = vec![3, 50, 240];
+    let small: Vec<i64> = vec![3, 50, 240];
     renderer
         .render_frames(&animation, Form::Grey8, small.iter().copied(), |frame| {
             let (Pixels::Grey8(pixels), report) =

@@ -224,7 +224,7 @@ fn an_invalid_frame_does_not_affect_the_others() {
     refused(
         here,
         &["render", "bad.toml", "-o", PATTERN],
-        1,
+        2,
         &["frame 51", "camera.focus"],
     );
 }
@@ -253,19 +253,18 @@ fn misuse_is_reported_before_anything_is_done() {
         &["small.toml", "-o", "f_##.gif"],
         &[".png, .exr, .npz, .y4m"],
     );
-    misused(&["small.toml", "--frames", "19-21"], &["19-21", "1 to 20"]);
+    misused(&["small.toml", "--frames", "21-22"], &["21-22", "1 to 20"]);
     misused(
         &["small.toml", "--frames", "5-1"],
         &["5-1", "before it begins"],
     );
-    misused(&["small.toml", "--frames", "0-4"], &["0-4", "from 1"]);
-    misused(&["small.toml", "--frames", "1..4"], &["1..4", "1-240"]);
-    misused(&["small.toml", "--frames", "1-4294967295"], &["1 to 20"]);
-    misused(&["classic", "--frames", "2"], &["no frame 2"]);
     misused(
-        &["small.toml", "--explain", "--frames", "2-3"],
-        &["--explain", "one frame"],
+        &["small.toml", "--frames", "-3-0"],
+        &["no frame 0", "1 to 20"],
     );
+    misused(&["small.toml", "--frames", "1..4"], &["1..4", "1-240"]);
+    misused(&["small.toml", "--frames", "21-4294967295"], &["1 to 20"]);
+    misused(&["classic", "--frames", "2"], &["no frame 2"]);
     misused(
         &["small.toml", "--require-table", "--method", "exact"],
         &["--require-table"],
@@ -293,6 +292,15 @@ fn a_job_writes_the_files_that_render_writes_and_refuses_others_in_the_same_word
         (&["small.toml", "-o", "n/f_%02d.npz"], "n/f_%02d.npz"),
     ] {
         let job = printed(here, &[&["job", "slurm"], args].concat());
+        let stem = args[0].trim_end_matches(".toml");
+        for line in [
+            format!("#SBATCH --job-name=darkness-{stem}"),
+            "##SBATCH --partition=PARTITION".into(),
+            "##SBATCH --time=HH:MM:SS".into(),
+            "##SBATCH --mem=4G".into(),
+        ] {
+            assert!(job.lines().any(|its| its == line), "{line}: {job}");
+        }
         let task = Command::new("bash")
             .args(["-c", &job])
             .env("PATH", &path)
@@ -339,9 +347,89 @@ fn a_camera_path_through_the_disk_or_hole_is_refused_before_the_first_frame() {
     ] {
         let bad = toml.replace("radius = 30.0, inclination = 80.0", path);
         fs::write(here.join("bad.toml"), bad).unwrap();
-        refused(here, &["render", "bad.toml", "-o", PATTERN], 1, &words);
+        refused(here, &["render", "bad.toml", "-o", PATTERN], 2, &words);
         assert!(!here.join("out").exists());
     }
+}
+
+/// Guards against frames that are all equal because a key has no effect.
+#[test]
+fn a_position_without_effect_and_an_animation_in_which_nothing_moves_are_told_of() {
+    let folder = with_animation(3);
+    let here = folder.path();
+    let toml = fs::read_to_string(here.join("small.toml")).unwrap();
+    let write = |text: &str| fs::write(here.join("bad.toml"), text).unwrap();
+    let render = ["render", "bad.toml", "-o", PATTERN];
+    write(&toml.replace("[camera]", "[camera]\nposition = [20, 0, 5]"));
+    let words = ["camera.position means nothing beside animation.orbit"];
+    refused(here, &render, 2, &words);
+    assert!(!here.join("out").exists());
+
+    let still = toml.replace("[0.0, 360.0]", "0.0");
+    write(&still);
+    let (_, stderr) = done(here, &render);
+    assert!(
+        stderr.contains("nothing moves in this animation: its 3 frames"),
+        "{stderr}"
+    );
+    let frames = files(&here.join("out"));
+    assert_eq!(frames.len(), 3);
+    let key =
+        |frame: u32, fov: u32| format!("\n[[animation.keyframe]]\nframe = {frame}\nfov = {fov}\n");
+    write(&format!("{still}{}{}", key(1, 30), key(3, 31)));
+    assert!(!done(here, &render).1.contains("nothing moves"));
+
+    let orbit = toml.lines().find(|line| line.starts_with("orbit")).unwrap();
+    let positions = "[[animation.keyframe]]\nframe = 1\nposition = [30, 0, 5]\n\
+                     [[animation.keyframe]]\nframe = 3\nposition = [20, 0, 5]\n";
+    let positions = toml.replace(orbit, positions);
+    write(&positions);
+    assert!(!done(here, &render).1.contains("camera.position"));
+    write(&positions.replace("[camera]", "[camera]\nposition = [9, 9, 9]"));
+    let (_, stderr) = done(here, &render);
+    assert!(stderr.contains("camera.position has no effect"), "{stderr}");
+}
+
+/// Guards against "1 frames", and against a pattern that is told in place of a file.
+#[test]
+fn one_frame_is_told_of_as_one_with_its_name() {
+    let folder = with_animation(4);
+    let here = folder.path();
+    let render = [
+        "render",
+        "small.toml",
+        "-o",
+        PATTERN,
+        "--progress",
+        "openjd",
+    ];
+    let one = [&render[..], &["--frames", "3"]].concat();
+    let (_, stderr) = done(here, &one);
+    assert!(
+        stderr.contains("out/f_0003.png: 96 × 54, table draft"),
+        "{stderr}"
+    );
+    assert!(stderr.contains("1 of 1 frame, "), "{stderr}");
+    assert!(
+        done(here, &one)
+            .1
+            .contains("out/f_0003.png: the frame was finished before")
+    );
+    fs::create_dir(here.join("out/f_0002.png")).unwrap();
+    let (output, stderr) = run(here, &[&render[..], &["--frames", "2-3"]].concat());
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        stderr.contains(
+            "1 frame failed; the same command tries it again:\n  2: out/f_0002.png: cannot"
+        ),
+        "{stderr}"
+    );
+    let (_, stderr) = done(here, &[&render[..], &["--frames", "3-4"]].concat());
+    assert!(
+        stderr.contains("1 frame of 96 × 54") && stderr.contains("; 1 was finished before"),
+        "{stderr}"
+    );
+    assert!(!stderr.contains("1 frames"), "{stderr}");
 }
 
 #[test]
@@ -453,7 +541,126 @@ fn progress_is_reported_in_the_form_that_is_asked_for() {
     );
     assert!(failed.contains("openjd_fail: "), "{failed}");
     let timings = stderr(&["--timings"]);
-    for part in ["curves", "render", "encode", "write", "frames/s"] {
-        assert!(timings.contains(part), "{timings}");
+    assert!(timings.contains("frames/s"), "{timings}");
+}
+
+/// Guards against parts above their whole, and parts that are of another run.
+#[test]
+fn the_times_of_the_parts_add_up_to_the_whole() {
+    let folder = with_animation(40);
+    let here = folder.path();
+    let render = ["render", "small.toml", "--overwrite", "--timings"];
+    for options in [
+        &["-o", PATTERN, "--threads", "2"][..],
+        &["-o", PATTERN, "--threads", "1"],
+        &["-o", "a.raw"],
+        &["-o", "f_#.exr", "--frames", "3"],
+    ] {
+        let (_, stderr) = done(here, &[&render[..], options].concat());
+        let milliseconds = |line: &str| -> f64 {
+            let (number, _) = line.trim_start().split_once(" ms ").unwrap();
+            number.parse().unwrap()
+        };
+        let lines: Vec<&str> = stderr
+            .lines()
+            .filter(|line| line.starts_with(' '))
+            .collect();
+        let parts = [
+            "memory",
+            "curves",
+            "render",
+            "encode",
+            "write",
+            "waiting and the rest",
+        ];
+        assert!(lines[0].contains(" ms  in all"), "{stderr}");
+        assert_eq!(lines.len(), 1 + parts.len(), "{stderr}");
+        for (line, part) in lines[1..].iter().zip(parts) {
+            assert!(line.ends_with(&format!(" ms    {part}")), "{stderr}");
+        }
+        let sum: f64 = lines[1..].iter().map(|line| milliseconds(line)).sum();
+        // Each number has one decimal.
+        assert!(
+            (sum - milliseconds(lines[0])).abs() < 0.05 * 7.01,
+            "{stderr}"
+        );
+    }
+}
+
+#[test]
+fn frames_are_numbered_from_where_the_animation_says() {
+    let folder = with_animation(8);
+    let here = folder.path();
+    let toml = fs::read_to_string(here.join("small.toml")).unwrap();
+    for (first, names) in [
+        (1001, ["f_1001.png", "f_1004.png", "f_1008.png"]),
+        (-4, ["f_-004.png", "f_-001.png", "f_0003.png"]),
+    ] {
+        let shifted = toml.replace("frames = 8", &format!("frames = 8\nfirst = {first}"));
+        fs::write(here.join("shifted.toml"), shifted).unwrap();
+        let render = ["render", "shifted.toml", "-o", PATTERN];
+        let some = format!("{}-{}", first, first + 3);
+        let (_, stderr) = done(here, &[&render[..], &["--frames", &some]].concat());
+        assert!(stderr.contains("4 frames"), "{stderr}");
+        // The same command draws the rest.
+        let (_, stderr) = done(here, &render);
+        assert!(stderr.contains("4 were finished before"), "{stderr}");
+        let all = files(&here.join("out"));
+        assert_eq!(all.len(), 8);
+        assert!(
+            names.iter().all(|name| all.contains_key(*name)),
+            "{:?}",
+            all.keys()
+        );
+        let listed = printed(here, &[&render[..], &["--dry-run"]].concat());
+        assert!(
+            listed.starts_with(&format!("{first}\tfinished\tout/{}\n", names[0])),
+            "{listed}"
+        );
+        // They show what the frames show that are numbered from 1.
+        done(here, &["render", "small.toml", "-o", "one/f_####.png"]);
+        let pixels = |path: &str| image::open(here.join(path)).unwrap().into_luma8();
+        assert!(pixels(&format!("out/{}", names[0])) == pixels("one/f_0001.png"));
+        assert!(pixels(&format!("out/{}", names[2])) == pixels("one/f_0008.png"));
+        let wrong = format!("{}", first - 1);
+        let words = [&*wrong, "the frames are", &first.to_string()];
+        refused(
+            here,
+            &[&render[..], &["--frames", &wrong]].concat(),
+            2,
+            &words,
+        );
+
+        fs::remove_dir_all(here.join("out")).unwrap();
+        let job = printed(
+            here,
+            &[
+                "job",
+                "slurm",
+                "shifted.toml",
+                "--chunk",
+                "5",
+                "-o",
+                PATTERN,
+            ],
+        );
+        let program = Path::new(env!("CARGO_BIN_EXE_darkness")).parent().unwrap();
+        for task in ["0", "1"] {
+            let path = format!("{}:/usr/bin:/bin", program.display());
+            let mut command = Command::new("bash");
+            let command = command
+                .args(["-c", &job])
+                .env("PATH", path)
+                .current_dir(here);
+            let output = command.env("SLURM_ARRAY_TASK_ID", task).output().unwrap();
+            assert!(output.status.success(), "{output:?}");
+        }
+        assert!(files(&here.join("out")) == all);
+        let job = printed(here, &["job", "openjd", "shifted.toml"]);
+        assert!(
+            job.contains(&format!("default: \"{first}-{}\"", first + 7)),
+            "{job}"
+        );
+        fs::remove_dir_all(here.join("out")).unwrap();
     }
 }

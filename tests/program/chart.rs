@@ -333,9 +333,10 @@ fn nothing_is_measured_for_files_that_cannot_be_written() {
     std::os::unix::fs::symlink("../x.csv", folder.path().join("there/link.svg")).unwrap();
     for (args, code, words) in [
         (&["-o", "a.png"][..], 2, &[".svg"][..]),
-        (&["no-such-scene"], 1, &["no-such-scene"]),
-        (&["-o", "there/no/a.svg"], 1, &["there/no", "-o"]),
-        (&["--csv", "there/no/a.csv"], 1, &["there/no", "--csv"]),
+        (&["no-such-scene"], 2, &["no-such-scene"]),
+        (&["grid"], 2, &["[disk]"]),
+        (&["-o", "small.toml/a.svg"], 1, &["small.toml", "-o"]),
+        (&["--csv", "small.toml/a.csv"], 1, &["small.toml", "--csv"]),
         (&["--csv", "there"], 1, &["folder", "--csv"]),
         (&["--csv", "-"], 2, &["--csv"]),
         (

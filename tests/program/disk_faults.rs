@@ -64,6 +64,7 @@ fn shell(here: &Path, line: &str) -> (Output, String) {
     command
         .current_dir(here)
         .env_remove("DARKNESS_TABLE")
+        .env("DARKNESS_CACHE", "tables")
         .args(["-c", &line.replace("{}", &program)]);
     told(&mut command)
 }
@@ -140,6 +141,7 @@ fn a_full_disk_is_reported_and_leaves_no_partial_file() {
         command
             .current_dir(here)
             .env_remove("DARKNESS_TABLE")
+            .env("DARKNESS_CACHE", "tables")
             .args(["--map-root-user", "--mount", "sh", "-c", &line]);
         told(&mut command)
     };
@@ -191,6 +193,7 @@ fn files_without_permission_are_reported_and_left_alone() {
         command
             .current_dir(here)
             .env_remove("DARKNESS_TABLE")
+            .env("DARKNESS_CACHE", "tables")
             .args(["-c", &line.replace("{}", "./darkness")]);
         if is_root {
             command.uid(65534).gid(65534);

@@ -196,7 +196,7 @@ fn light_that_makes_no_sense_is_refused_with_what_to_change() {
         fs::write(here.join("bad.toml"), scene.replace(line, other)).unwrap();
         for output in ["f.png", "f.exr", "f.npz", "f.y4m"] {
             let words = [&["bad.toml"], words].concat();
-            refused(here, &["render", "bad.toml", "-o", output], 1, &words);
+            refused(here, &["render", "bad.toml", "-o", output], 2, &words);
         }
     }
     assert_eq!(listing(here), ["bad.toml"]);
@@ -283,15 +283,16 @@ fn a_rerun_draws_frames_that_are_missing_damaged_or_of_another_scene() {
         assert!(drawn(&[]).contains("all frames were finished before"));
         let name = |number: u32| format!("f_{number:02}.{extension}");
         fs::remove_file(out.join(name(1))).unwrap();
-        for (number, part) in [(2, 0), (3, 1), (4, 2), (5, 3)] {
-            // A bit of the header, of the values, and of the end.
+        for (number, part) in [(2, 3), (3, 5), (4, 7), (5, 8)] {
+            // A bit of the head, of the values, and of the end.
             let mut damaged = first[&name(number)].clone();
-            let place = (damaged.len() - 1) * part / 3;
+            let place = (damaged.len() - 1) * part / 8;
             damaged[place] ^= 4;
             fs::write(out.join(name(number)), damaged).unwrap();
         }
         fs::write(out.join(name(6)), &first[&name(7)]).unwrap();
-        fs::write(out.join(name(8)), &first[&name(8)][..100]).unwrap();
+        let half = &first[&name(8)][..first[&name(8)].len() * 3 / 4];
+        fs::write(out.join(name(8)), half).unwrap();
         let dry = done(here, &["render", scene, "-o", &pattern, "--dry-run"]).0;
         let dry = String::from_utf8(dry).unwrap();
         assert_eq!(dry.matches("to draw").count(), 7, "{dry}");

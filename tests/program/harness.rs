@@ -43,6 +43,7 @@ pub(crate) fn tool(folder: &Path, line: &[&str]) -> Command {
             format!("{}:{others}:/usr/sbin:/sbin", ours.display()),
         )
         .env_remove("DARKNESS_TABLE")
+        .env("DARKNESS_CACHE", "tables")
         .args(&line[1..]);
     command
 }

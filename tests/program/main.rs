@@ -19,6 +19,7 @@ mod encoders;
 mod farm;
 mod formats;
 mod long_runs;
+mod outputs;
 mod readers;
 mod skies;
 mod sky_faults;

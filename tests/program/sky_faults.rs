@@ -40,7 +40,10 @@ fn limited(here: &Path, line: &str) -> Output {
 fn limited_to(kibibytes: u32, here: &Path, line: &str) -> Output {
     let line = format!("ulimit -v {kibibytes}; exec timeout 60 '{PROGRAM}' {line}");
     let mut command = Command::new("sh");
-    command.current_dir(here).env_remove("DARKNESS_TABLE");
+    command
+        .current_dir(here)
+        .env_remove("DARKNESS_TABLE")
+        .env("DARKNESS_CACHE", "tables");
     command.args(["-c", &line]).output().unwrap()
 }
 
@@ -114,7 +117,8 @@ fn a_panorama_that_is_none_is_refused() {
             &[&["panorama sky.png: "], words].concat(),
         );
     };
-    refused(&["cannot be read", "No such file"]);
+    let words = ["panorama sky.png: ", "cannot be read", "No such file"];
+    is_refused(here, "p.toml", "", 2, &words);
     fs::create_dir(&path).unwrap();
     refused(&["not a regular file"]);
     fs::remove_dir(&path).unwrap();
@@ -225,7 +229,12 @@ fn a_catalogue_that_is_none_is_refused() {
             &[&["star catalogue stars.csv: "], words].concat(),
         );
     };
-    refused(&["cannot be read", "No such file"]);
+    let words = [
+        "star catalogue stars.csv: ",
+        "cannot be read",
+        "No such file",
+    ];
+    is_refused(here, "s.toml", "", 2, &words);
     fs::create_dir(&path).unwrap();
     refused(&["not a regular file"]);
     fs::remove_dir(&path).unwrap();

@@ -11,7 +11,7 @@ use super::super::progress::ProgressKind;
 use super::super::threads::ThreadArgs;
 use super::format::Format;
 use super::memory;
-use crate::scene::{DEFAULT_SCENE, ImageSize};
+use crate::scene::{DEFAULT_SCENE, ImageSize, Override};
 
 /// Render a scene as a picture or as data, or its animation as numbered files or a film
 ///
@@ -29,6 +29,23 @@ pub(in crate::cli) struct RenderArgs {
     /// A scene's TOML file, or the name of a built-in scene (`darkness scene` lists them)
     #[arg(value_name = "SCENE", default_value = DEFAULT_SCENE)]
     pub(super) scene: PathBuf,
+    /// Give any key of the scene another value, one of TOML: --set camera.fov=12, --set disk.normal=[0,1,1], --set
+    /// animation.keyframe.120.fov=9 (the keyframe at frame 120). An empty value takes the key out
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = Override::parse)]
+    pub(super) set: Vec<Override>,
+    /// The camera's radius, in Schwarzschild radii, or its orbit's. The angles stay [default: the scene's]
+    #[arg(long, value_name = "R", allow_negative_numbers = true)]
+    pub(super) radius: Option<f64>,
+    /// The camera's inclination from +z, or its orbit's: 0 is face-on to a level disk, 90 edge-on [default: the
+    /// scene's]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    pub(super) inclination: Option<f64>,
+    /// The camera's azimuth from +x, or its orbit's [default: the scene's]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    pub(super) azimuth: Option<f64>,
+    /// The vertical field of view [default: the scene's]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    pub(super) fov: Option<f64>,
     /// The output: a .png, .exr or .npz file, or - for the standard output. For an animation: such a name with #### or
     /// %04d in place of the number, or a film: .y4m, .raw, or by ffmpeg .mp4, .mov, .mkv or .webm [default: the scene's
     /// name with .png, with .exr if it names layers, with _#### for an animation, in the current folder]
@@ -37,10 +54,11 @@ pub(in crate::cli) struct RenderArgs {
     /// The format, where the extension does not name it
     #[arg(long, value_name = "FORMAT", value_enum)]
     pub(super) format: Option<Format>,
-    /// The frames of an animation: 12, 1-240, every tenth as 1-240x10 or 1-240:10, several with commas [default: all]
-    #[arg(long, value_name = "RANGE")]
+    /// The frames of an animation, by their own numbers: 12, 1-240, every tenth as 1-240x10 or 1-240:10, negative ones
+    /// as -9--1, several with commas [default: all]
+    #[arg(long, value_name = "RANGE", allow_hyphen_values = true)]
     pub(super) frames: Option<FrameRange>,
-    /// Draw finished frames again
+    /// Draw finished frames again, and replace files that other programs made
     #[arg(long)]
     pub(super) overwrite: bool,
     /// List the frames and their files, and draw nothing
@@ -55,8 +73,8 @@ pub(in crate::cli) struct RenderArgs {
     /// The largest error of an edge, in pixels, above 0 and at most 1 [default: the scene's]
     #[arg(long, value_name = "PIXELS", allow_negative_numbers = true)]
     pub(super) tolerance: Option<f64>,
-    /// Smooth edges: each pixel is the share of its square that the disk covers; with false, what its centre sees. Only
-    /// --method table draws smooth edges [default: the scene's]
+    /// Smooth edges: each pixel is the share of its square that the disk covers, a linear value and not sRGB; with
+    /// false, what its centre sees. Only --method table draws smooth edges [default: the scene's]
     #[arg(long, value_name = "true|false", action = clap::ArgAction::Set)]
     pub(super) antialias: Option<bool>,
     /// The layers of a .exr or .npz file, with commas: coverage, order, radius, azimuth, redshift, emission_cosine,
@@ -70,10 +88,11 @@ pub(in crate::cli) struct RenderArgs {
     /// The bits of a PNG picture's samples: 8 or 16 [default: the scene's; 1 for masks with hard edges]
     #[arg(long, value_name = "8|16", value_parser = bits)]
     pub(super) bits: Option<u8>,
-    /// Print the time of each part of the work: reading the sky, curves, render, encode, write
+    /// Print the time of each part of the work: reading the sky, memory, curves, render, encode, write
     #[arg(long, conflicts_with_all = ["explain", "dry_run"])]
     pub(super) timings: bool,
-    /// Print what the picture needs and what it does not, and draw nothing
+    /// Print what the picture needs and what it does not, and draw nothing. Of several frames: each figure's range, and
+    /// the frame that decides
     #[arg(long, conflicts_with = "output")]
     pub(super) explain: bool,
     /// Fail where the table is missing, instead of making it: for one of many workers

@@ -38,6 +38,14 @@ impl FrameSource<'_> {
         }
     }
 
+    /// Returns how many threads draw frames of their own, of `count` frames, at most `at_a_time` of them side by side.
+    pub(super) fn threads(count: u64, at_a_time: u64) -> usize {
+        match Sharing::fastest(count, at_a_time) {
+            Sharing::SideBySide => rayon::current_num_threads(),
+            Sharing::OneByOne => 1,
+        }
+    }
+
     /// Draws the frames `numbers`, about `count`, at most `at_a_time` side by side. Frames that are not `wanted` are
     /// skipped; `done` takes each drawn frame, from several threads and in any order.
     ///
@@ -45,10 +53,10 @@ impl FrameSource<'_> {
     /// The first error of `done`; no frame is begun after it.
     pub(super) fn draw_all<E: Send>(
         &self,
-        numbers: impl Iterator<Item = u32> + Send,
+        numbers: impl Iterator<Item = i64> + Send,
         count: u64,
         at_a_time: u64,
-        wanted: impl Fn(u32) -> bool + Sync,
+        wanted: impl Fn(i64) -> bool + Sync,
         done: impl Fn(DrawnFrame<'_>) -> Result<(), E> + Sync,
     ) -> Result<(), E> {
         let sharing = Sharing::fastest(count, at_a_time);

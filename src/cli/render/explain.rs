@@ -1,191 +1,149 @@
 //! `darkness render --explain`: what a picture needs, and what it does not.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use bytesize::ByteSize;
 
 use super::super::frame_range::FrameRange;
 use super::super::method::Method;
-use super::super::misuse::misuse;
 use super::super::progress::Report;
 use super::super::stdio::print;
 use super::super::threads::start_threads;
 use super::args::RenderArgs;
-use super::{draw, form, memory, options, sky};
-use crate::isoradial::{EscapeCurve, Isoradials, RadiusMap};
+use super::figures::{Figures, figure, push_line};
+use super::{form, memory, options, sky};
+use crate::quotation::beginning;
 use crate::render::Form;
 use crate::render::needs::{Candidate, Needs};
-use crate::scene::{Animation, ImageSize, Scene, Sky, StarSource, View};
+use crate::scene::{Animation, ImageSize, Scene, Sky, StarSource};
 use crate::sky::SkySource;
 
-/// Prints what one frame needs.
+/// The most frames that are looked at.
+const MOST_FRAMES: usize = 1000;
+
+/// Prints what the frames need: of each figure the range, and the frame in which it is greatest.
 ///
 /// # Errors
-/// Several frames, a scene or a table that is refused, or a standard output that cannot be written.
+/// A scene or a table that is refused, or a standard output that cannot be written.
 pub(super) fn run(
     args: &RenderArgs,
     animation: &Animation,
     frames: &FrameRange,
     report: Report,
 ) -> anyhow::Result<()> {
-    if args.frames.is_some() && frames.iter().nth(1).is_some() {
-        return Err(misuse(
-            "--explain describes one frame; choose one with --frames",
-        ));
-    }
-    let scene = animation.frame(frames.iter().next().unwrap_or(1))?;
     let form = form::expected(args, animation)?;
-    let needs = Needs::new(&scene, &View::new(&scene), form);
+    let looked_at = looked_at(frames);
+    let first = animation.check(looked_at[0])?;
+    for &number in &looked_at[1..] {
+        animation.check(number)?;
+    }
+    let sky = first.sky().filter(|_| form.shows_light());
+    sky::check_files(sky)?;
+    // One table serves all frames.
+    let needs = Needs::of_animation(animation, form)?;
     let needed = needs.table().map(|candidate| candidate.name);
     let checked = args.method.check(needed)?;
     start_threads(args.threads.threads)?;
     let method = options::method(args, checked, report)?;
     let table = args.method.table_path(needed);
-    let curves = draw::curves(&needs, &method);
-    let shows_disk = form.needs_map(&scene) && scene.disk().is_some();
-    let map = shows_disk.then(|| draw::map(&curves, &method));
-    let drawn = (&curves, map.as_ref(), form);
-    let mut text = text(&scene, &needs, drawn, &method, table.as_deref());
-    if form.needs_escape(&scene) {
-        let curve = draw::escape_curve(&View::new(&scene), &method);
-        text.push_str(&escape_line(&curve, &method));
+
+    let mut figures = Figures::default();
+    for &number in &looked_at {
+        figures.add(number, &animation.frame(number)?, form, &method);
     }
-    if let Some(sky) = scene.sky().filter(|_| form.shows_light()) {
-        let frame = memory::of_frame(scene.image(), form);
+    let mut text = String::new();
+    push_line(&mut text, "picture", &picture(&first));
+    if !animation.is_still() {
+        push_line(&mut text, "frames", &frame_line(frames, &looked_at));
+    }
+    text.push_str(&table_lines(
+        (animation, first.disk().is_some()),
+        &needs,
+        &method,
+        table.as_deref(),
+    ));
+    text.push_str(&figures.lines(&first, form));
+    if let Some(sky) = sky {
+        let frame = memory::of_frame(first.image(), form);
         let source = sky::read(sky, frame, args.max_memory, report)?;
         text.push_str(&sky_lines(sky, &source));
     }
-    push_line(&mut text, "not needed", &not_needed(&scene, form));
+    push_line(&mut text, "not needed", &not_needed(&first, form));
     print(&text)?;
     Ok(())
 }
 
-/// The lines of the picture, of the table and of the disk's curves.
-fn text(
-    scene: &Scene,
+/// The frames that are looked at: all, or evenly spaced ones.
+fn looked_at(frames: &FrameRange) -> Vec<i64> {
+    let all: Vec<i64> = frames.iter().take(MOST_FRAMES + 1).collect();
+    if all.len() <= MOST_FRAMES {
+        return all;
+    }
+    let (first, span) = (all[0], frames.last() - all[0]);
+    let number = |place| first + span * place as i64 / (MOST_FRAMES - 1) as i64;
+    let numbers = (0..MOST_FRAMES).filter_map(|place| frames.above(number(place) - 1));
+    let mut numbers: Vec<i64> = numbers.collect();
+    numbers.dedup();
+    numbers
+}
+
+/// What the picture is to be.
+fn picture(scene: &Scene) -> String {
+    let ImageSize { width, height } = scene.image();
+    let size = format!("{width} × {height}");
+    if scene.disk().is_none() {
+        return size;
+    }
+    let tolerance = scene.tolerance();
+    let half = figure(0.5 * tolerance);
+    format!(
+        "{size}, edges to be right to {tolerance:?} pixels: {half} for the table, {half} for the curves"
+    )
+}
+
+/// Which frames the figures are of.
+fn frame_line(frames: &FrameRange, looked_at: &[i64]) -> String {
+    let which = match looked_at {
+        [only] => return format!("{only}"),
+        _ if frames.iter().nth(MOST_FRAMES).is_none() => format!("{frames}"),
+        _ => format!(
+            "{} of {}, evenly spaced",
+            looked_at.len(),
+            beginning(&frames.to_string(), 40)
+        ),
+    };
+    format!("{which}; each figure's range, and the frame in which it is greatest")
+}
+
+/// The table that is used, and which would do.
+fn table_lines(
+    (animation, has_disk): (&Animation, bool),
     needs: &Needs,
-    (curves, map, form): (&Isoradials, Option<&RadiusMap>, Form),
     method: &Method,
     path: Option<&Path>,
 ) -> String {
     let mut text = String::new();
-    let mut line = |label: &str, line: String| push_line(&mut text, label, &line);
-    let has_disk = scene.disk().is_some();
-    let ImageSize { width, height } = scene.image();
-    let picture = format!("{width} × {height}");
-    if has_disk {
-        let (tolerance, sensitivity) = (scene.tolerance(), figure(needs.sensitivity));
-        line(
-            "picture",
-            format!("{picture}, edges to be right to {tolerance:?} pixels"),
-        );
-        line(
-            "edges",
-            format!("move by at most {sensitivity} pixels for each radian of error in an angle"),
-        );
-    } else {
-        line("picture", picture);
-    }
-
-    let mut bytes_read = 0;
-    if let (Method::Table(table), Some(path)) = (method, path) {
-        let (metadata, path) = (table.metadata(), path.display());
-        let (name, error) = (&metadata.spec.name, metadata.measured_error);
-        line("table", format!("{name} ({path}), error {error:.1e} rad"));
-        bytes_read = table.bytes().len();
-    } else {
-        line(
-            "table",
-            "none is good enough; the curves are drawn from exact angles".into(),
-        );
-    }
-    for candidate in &needs.tables {
-        line("", judgement(candidate, needs, has_disk));
-    }
-
-    let pixels = u64::from(width) * u64::from(height) * form.bytes() as u64;
-    if !has_disk {
-        line("orders", "none: the scene has no disk".into());
-        line(
-            "bytes",
-            format!("{bytes_read} of the table, {pixels} of pixels"),
-        );
-        return text;
-    }
-    let mut label = "orders";
-    for order in curves.orders() {
-        let (number, nodes) = (order.number(), order.nodes());
-        let thickness = figure(order.thickness());
-        line(
-            label,
-            format!("{number}: at most {thickness} pixels thick, {nodes} nodes"),
-        );
-        label = "";
-    }
-    if curves.orders().is_empty() {
-        line(label, "none: the disk is not in the picture".into());
-    }
-    if let Some(thin) = curves.left_out() {
-        let thickness = figure(thin.thickness);
-        line(
-            "",
-            format!(
-                "{} and up are left out, at most {thickness} pixels thick",
-                thin.order
-            ),
-        );
-    }
-    let (bytes, nodes) = (curves.bytes(), curves.nodes());
-    line(
-        "bytes",
-        format!(
-            "{bytes_read} of the table, {bytes} of curves with {nodes} nodes, {pixels} of pixels"
-        ),
-    );
-    let error = curves.error();
-    line(
-        "edge error",
-        format!(
-            "at most {} pixels: {} between nodes, {} from the angles, {} from rounding",
-            figure(error.total()),
-            figure(error.interpolation),
-            figure(error.angles),
-            figure(error.rounding)
-        ),
-    );
-    if let Some(map) = map {
-        line(
-            "map",
-            format!(
-                "of the radius: {} nodes, {} bytes, radii right to {} of themselves",
-                map.nodes(),
-                map.bytes(),
-                figure(map.error())
-            ),
-        );
-    }
-    text
-}
-
-/// Adds a line to an explanation.
-fn push_line(text: &mut String, label: &str, line: &str) {
-    let _ = writeln!(text, "{label:<12}{line}");
-}
-
-/// The line of the escape curve. A ray's direction is as far off as the angle that it sweeps.
-fn escape_line(curve: &EscapeCurve, method: &Method) -> String {
-    let (octaves, nodes, bytes) = (curve.octaves(), curve.nodes(), curve.bytes());
-    let angles = match method {
-        Method::Table(table) => table.metadata().measured_error,
-        _ => 0.0,
+    let line = match (method, path) {
+        (Method::Table(table), Some(path)) => {
+            let (metadata, path) = (table.metadata(), path.display());
+            let (name, error) = (&metadata.spec.name, metadata.measured_error);
+            let bytes = table.bytes().len();
+            format!("{name} ({path}), error {error:.1e} rad, {bytes} bytes")
+        }
+        _ => "none is good enough; the curves are drawn from exact angles".into(),
     };
-    let error = angles + EscapeCurve::INTERPOLATION_ERROR;
-    let mut text = String::new();
-    let line = format!(
-        "{octaves} octaves towards the critical ray: {nodes} nodes, {bytes} bytes, directions right to {error:.1e} rad"
-    );
-    push_line(&mut text, "escape", &line);
+    push_line(&mut text, "table", &line);
+    for candidate in &needs.tables {
+        push_line(&mut text, "", &judgement(candidate, needs, has_disk));
+    }
+    if has_disk && animation.frames() > 1 {
+        let line = format!(
+            "one table for all frames: of {} of them edges move most in frame {}, which decides",
+            animation.frames().min(Needs::SAMPLED),
+            needs.frame
+        );
+        push_line(&mut text, "", &line);
+    }
     text
 }
 
@@ -229,10 +187,12 @@ fn sky_lines(sky: &Sky, source: &SkySource) -> String {
 /// What the picture does without.
 fn not_needed(scene: &Scene, form: Form) -> String {
     let mut without = vec!["a ray for each pixel"];
-    if scene.disk().is_none() {
-        without.push("no map of the radius, since there is no disk");
-    } else if !form.needs_map(scene) {
-        without.push("no map of the radius, since the picture shows only where the disk is");
+    match (scene.disk().is_some(), form.needs_map(scene)) {
+        (false, _) => without.push("no map of the radius, since there is no disk"),
+        (true, false) => {
+            without.push("no map of the radius, since the picture shows only where the disk is");
+        }
+        (true, true) => {}
     }
     match (scene.sky().is_some(), form.shows_light()) {
         (false, _) => without.push("no panorama, stars or grid, since there is no sky"),
@@ -251,10 +211,12 @@ fn not_needed(scene: &Scene, form: Form) -> String {
 /// Tells a table's error, and whether it is good enough. With a disk it is told as a displacement of edges.
 fn judgement(candidate: &Candidate, needs: &Needs, has_disk: bool) -> String {
     let chosen = needs.table().map(|table| table.name) == Some(candidate.name);
-    let moves_edges = candidate.displacement > 0.5 * needs.curve_spec.tolerance;
+    let half = 0.5 * needs.curve_spec.tolerance;
+    let moves_edges = candidate.displacement > half;
     let verdict = match (candidate.is_enough, chosen) {
-        (false, _) if has_disk && !moves_edges => "enough for edges, not for light and data",
-        (false, _) => "not enough",
+        (false, _) if !has_disk => "not enough",
+        (false, _) if !moves_edges => "enough for edges, not for light and data",
+        (false, _) => &format!("more than {}, not enough", figure(half)),
         (true, true) => "enough",
         (true, false) => "more than enough",
     };
@@ -264,16 +226,4 @@ fn judgement(candidate: &Candidate, needs: &Needs, has_disk: bool) -> String {
         format!("up to {:.1e} rad", candidate.error)
     };
     format!("{}: {error}, {verdict}", candidate.name)
-}
-
-/// A number with two significant digits.
-fn figure(value: f64) -> String {
-    if value == 0.0 {
-        "0".into()
-    } else if (1e-3..1e5).contains(&value) {
-        let digits = (1.0 - libm::floor(libm::log10(value))).max(0.0) as usize;
-        format!("{value:.digits$}")
-    } else {
-        format!("{value:.1e}")
-    }
 }

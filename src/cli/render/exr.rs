@@ -22,7 +22,7 @@ use exr::meta::header::Header;
 use flate2::write::ZlibEncoder;
 
 use super::memory;
-use super::origin::{FrameOrigin, SOFTWARE};
+use super::origin::{ANY_VERSION, FrameOrigin, HEAD, SOFTWARE};
 use crate::render::Plane;
 use crate::scene::{ImageSize, Layer};
 
@@ -32,11 +32,11 @@ const CHECKSUM: &str = "darkness:crc32";
 /// What stands in place of the checksum while it is computed.
 const NO_CHECKSUM: &str = "00000000";
 
+/// The first bytes of every OpenEXR file.
+const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+
 /// The bytes of magic number and version, before the first attribute.
 const START: usize = 8;
-
-/// More than the attributes of a file take, in bytes.
-const MOST_ATTRIBUTES: usize = 4096;
 
 /// The rows of a compressed block.
 const ROWS: usize = 16;
@@ -116,9 +116,19 @@ fn zipped(values: Vec<u8>) -> io::Result<Vec<u8>> {
     })
 }
 
+/// Whether a file that begins with `head` is an OpenEXR file that some version of this program made.
+pub(super) fn is_ours(head: &[u8]) -> bool {
+    let text = find(head, b"software\0string\0").map(|place| &head[place + 16..]);
+    let is_ours = |text: &[u8]| {
+        text.get(4..)
+            .is_some_and(|text| text.starts_with(ANY_VERSION.as_bytes()))
+    };
+    head.starts_with(&MAGIC) && text.is_some_and(is_ours)
+}
+
 /// Whether `file` is a whole file, with the right checksum, that this version of the program made of `origin`.
 pub(super) fn made(file: &[u8], origin: &FrameOrigin) -> bool {
-    let head = &file[..file.len().min(MOST_ATTRIBUTES)];
+    let head = &file[..file.len().min(HEAD)];
     let has = |key, text: &str| find(head, &attribute(key, text)).is_some();
     let is_whole = checksum(file).is_some_and(|checksum| has(CHECKSUM, &checksum));
     let key = |key| if key == SOFTWARE { "software" } else { key };
@@ -231,7 +241,7 @@ fn checksum(file: &[u8]) -> Option<String> {
 fn checksum_place(file: &[u8]) -> Option<usize> {
     let attribute = attribute(CHECKSUM, NO_CHECKSUM);
     let before = &attribute[..attribute.len() - NO_CHECKSUM.len()];
-    Some(find(&file[..file.len().min(MOST_ATTRIBUTES)], before)? + before.len())
+    Some(find(&file[..file.len().min(HEAD)], before)? + before.len())
 }
 
 /// Where `needle` begins in `bytes`.
@@ -246,7 +256,9 @@ mod tests {
     use exr::prelude::{ReadChannels, ReadLayers, read};
 
     use super::super::origin::PROGRAM;
-    use super::super::origin::tests::{assert_no_other_is_taken, origin};
+    use super::super::origin::tests::{
+        assert_no_other_is_taken, assert_only_ours_is_taken, origin,
+    };
     use super::*;
 
     const SIZE: ImageSize = ImageSize {
@@ -341,5 +353,6 @@ mod tests {
     fn a_file_of_another_origin_or_with_any_damage_is_not_taken_for_the_same() {
         let file = encode(&planes(), SIZE, &origin(12)).unwrap();
         assert_no_other_is_taken(&file, &origin(12), made);
+        assert_only_ours_is_taken(&file, is_ours);
     }
 }

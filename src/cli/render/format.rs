@@ -10,8 +10,8 @@ use crate::scene::Animation;
 /// What is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Format {
-    /// A PNG picture for each frame: grey for masks, sRGB for light; 8 or 16 bits a sample, 1 where a mask's edges are
-    /// hard
+    /// A PNG picture for each frame: linear grey for masks (gAMA 1.0), sRGB for light; 8 or 16 bits a sample, 1 where a
+    /// mask's edges are hard
     Png,
     /// An OpenEXR file for each frame: linear light and layers of data, as 32-bit floats
     Exr,
@@ -19,7 +19,7 @@ pub(super) enum Format {
     Npz,
     /// A film of all frames, YUV4MPEG2: 4:2:0, BT.709, limited range
     Y4m,
-    /// A film of masks, YUV4MPEG2: grey, full range
+    /// A film of masks, YUV4MPEG2: grey, full range, which many encoders refuse or mark as limited
     #[value(name = "y4m-gray")]
     Y4mGray,
     /// The samples of all frames, row by row: a byte of grey, or three of red, green and blue
@@ -50,11 +50,15 @@ impl Format {
         }
     }
 
+    /// The format of a path's extension, if it is that of one.
+    pub(super) fn of_extension(path: &Path) -> Option<Self> {
+        let mut formats = Self::value_variants().iter().copied();
+        formats.find(|format| has_extension(path, format.extension()))
+    }
+
     /// The format of a path's extension, [`Self::Png`] for any other.
     pub(super) fn of(path: &Path) -> Self {
-        let formats = Self::value_variants().iter().copied();
-        let mut named = formats.filter(|format| has_extension(path, format.extension()));
-        named.next().unwrap_or(Self::Png)
+        Self::of_extension(path).unwrap_or(Self::Png)
     }
 
     /// The extension of its files.

@@ -8,6 +8,7 @@ mod draw;
 mod explain;
 mod exr;
 mod ffmpeg;
+mod figures;
 mod film;
 mod form;
 mod format;
@@ -33,7 +34,7 @@ pub(super) use output::sequence;
 use plan::Plan;
 pub(super) use sky::files as sky_files;
 
-use super::progress::{ProgressKind, Report};
+use super::progress::{ProgressKind, Report, warn};
 use super::stdio::StdoutError;
 use super::threads::start_threads;
 
@@ -52,6 +53,18 @@ pub(super) fn run(args: &RenderArgs, report: Report) -> anyhow::Result<()> {
 fn render(args: &RenderArgs, report: Report) -> anyhow::Result<()> {
     let animation = options::animation(args)?;
     let frames = options::frames(args, &animation)?;
+    if animation.frames() > 1 && !animation.moves() {
+        warn(format_args!(
+            "nothing moves in this animation: its {} frames are equal; give it an orbit whose angles or radius go \
+             [from, to], or keyframes of different values",
+            animation.frames()
+        ));
+    }
+    if animation.ignores_position() {
+        warn(
+            "camera.position has no effect, since keyframes set the position; remove it from one of them",
+        );
+    }
     if args.explain {
         return explain::run(args, &animation, &frames, report);
     }

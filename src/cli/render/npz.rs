@@ -7,13 +7,14 @@
 //!
 //! The formats: PKWARE's APPNOTE.TXT 6.3.10 (4.3), and NumPy's `numpy.lib.format` (version 1.0).
 
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 
 use flate2::Compression;
+use flate2::read::DeflateDecoder;
 use flate2::write::DeflateEncoder;
 
 use super::memory;
-use super::origin::FrameOrigin;
+use super::origin::{ANY_VERSION, FrameOrigin, SOFTWARE};
 use crate::render::Plane;
 use crate::scene::{ImageSize, Layer};
 
@@ -22,6 +23,15 @@ const COMMENT: usize = 8;
 
 /// The most bytes of a frame's arrays: lengths and places have 32 bits.
 const MOST_BYTES: u64 = u32::MAX as u64;
+
+/// The name of the array that holds the [`FrameOrigin`].
+const TEXTS: &str = "darkness";
+
+/// What stands before each array of an archive.
+const ENTRY: &[u8] = b"PK\x03\x04";
+
+/// The bytes of an array before its data, which begin at a multiple of 64.
+const ARRAY_HEADER: usize = 128;
 
 /// An archive that is being written.
 #[derive(Default)]
@@ -75,6 +85,20 @@ pub(super) fn encode(
     Ok(archive.finish())
 }
 
+/// Whether a file that begins with `head` is an archive that some version of this program made.
+pub(super) fn is_ours(head: &[u8]) -> bool {
+    let text = format!("{SOFTWARE}={ANY_VERSION}");
+    let letters: Vec<u8> = text
+        .chars()
+        .flat_map(|letter| u32::from(letter).to_le_bytes())
+        .collect();
+    let mut array = vec![0; ARRAY_HEADER + letters.len()];
+    // The first array, after its own header in the archive and its name.
+    let deflated = head.get(30 + TEXTS.len() + 4..).unwrap_or_default();
+    let is_read = DeflateDecoder::new(deflated).read_exact(&mut array).is_ok();
+    head.starts_with(ENTRY) && is_read && array.ends_with(&letters)
+}
+
 /// Whether `file` is a whole archive, with the right checksum, that this version of the program made of `origin`.
 pub(super) fn made(file: &[u8], origin: &FrameOrigin) -> bool {
     let Some((checked, comment)) = file.split_last_chunk::<COMMENT>() else {
@@ -95,17 +119,15 @@ fn begun(origin: &FrameOrigin) -> io::Result<Archive> {
         .collect();
     let mut archive = Archive::default();
     let array = array(&format!("<U{}", letters.len()), "", letters.into_iter());
-    archive.add("darkness", &array)?;
+    archive.add(TEXTS, &array)?;
     Ok(archive)
 }
 
 /// A `.npy` file: an array of a NumPy type, and of a shape in words.
 fn array<const N: usize>(kind: &str, shape: &str, items: impl Iterator<Item = [u8; N]>) -> Vec<u8> {
-    // The data begin at a multiple of 64.
-    const START: usize = 128;
     const BEFORE: usize = 10;
     let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({shape}), }}");
-    let length = START - BEFORE;
+    let length = ARRAY_HEADER - BEFORE;
     let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
     bytes.extend((length as u16).to_le_bytes());
     bytes.extend(format!("{header:<0$}\n", length - 1).as_bytes());
@@ -140,7 +162,7 @@ impl Archive {
         entry.extend((name.len() as u16).to_le_bytes());
         // No extra field.
         entry.extend([0, 0]);
-        for part in [b"PK\x03\x04", entry.as_slice(), name.as_bytes(), &deflated] {
+        for part in [ENTRY, entry.as_slice(), name.as_bytes(), &deflated] {
             self.bytes.extend_from_slice(part);
         }
         // In the directory the version of the maker comes first; comment, disk and attributes come after.
@@ -184,13 +206,11 @@ impl Archive {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-    use std::io::Read;
-
-    use flate2::read::DeflateDecoder;
-
-    use super::super::origin::tests::{assert_no_other_is_taken, origin};
+    use super::super::origin::tests::{
+        assert_no_other_is_taken, assert_only_ours_is_taken, origin,
+    };
     use super::*;
+    use std::collections::BTreeMap;
 
     const SIZE: ImageSize = ImageSize {
         width: 3,
@@ -280,5 +300,6 @@ mod tests {
     fn a_file_of_another_origin_or_with_any_damage_is_not_taken_for_the_same() {
         let file = encode(&planes(), SIZE, &origin(12)).unwrap();
         assert_no_other_is_taken(&file, &origin(12), made);
+        assert_only_ours_is_taken(&file, is_ours);
     }
 }

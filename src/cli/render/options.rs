@@ -3,11 +3,12 @@
 use super::super::frame_range::FrameRange;
 use super::super::method::{Checked, Method};
 use super::super::misuse::misuse;
-use super::super::progress::Report;
+use super::super::progress::{Report, warn};
 use super::args::RenderArgs;
+use super::format::Format;
 use super::memory;
 use crate::render::Form;
-use crate::scene::{Animation, ImageSize, LayerSet, SceneError};
+use crate::scene::{Animation, ImageSize, Override, SceneError};
 
 /// The scene, with what the options change of it.
 ///
@@ -25,52 +26,97 @@ pub(super) fn animation(args: &RenderArgs) -> anyhow::Result<Animation> {
             return Err(misuse(format!("{flag} needs --method table")));
         }
     }
-    let mut animation = Animation::load(&args.scene)?;
     if let Some(size) = args.size {
         memory::check(args.max_memory, size, Form::Grey8)?;
-        let ImageSize { width, height } = size;
-        let sized = animation.with_size(width, height);
-        animation = sized.map_err(|error| misuse(format!("--size {width}x{height}: {error}")))?;
     }
-    if let Some(antialias) = args.antialias {
-        animation = animation.with_antialias(antialias)?;
-    }
-    if let Some(pixels) = args.tolerance {
-        let right = animation.with_tolerance(pixels);
-        animation = right.map_err(|error| misuse(format!("--tolerance {pixels}: {error}")))?;
-    }
-    if let Some(names) = &args.layers {
-        let layers = LayerSet::from_names(names).and_then(|layers| animation.with_layers(layers));
-        animation = layers.map_err(|error| misuse(format!("--layers: {error}")))?;
-    }
-    if let Some(bits) = args.bits {
-        animation = animation.with_bits(bits)?;
-    }
-    if let Some(stops) = args.exposure {
-        if !animation.shows_colour() {
-            return Err(misuse(
-                "--exposure changes light, and this scene has none; give it a [disk.light] or a [sky], or leave \
-                 --exposure out",
-            ));
-        }
-        let exposed = animation.with_exposure(stops);
-        animation = exposed.map_err(|error| misuse(format!("--exposure {stops}: {error}")))?;
+    let animation = Animation::load_with(&args.scene, &overrides(args));
+    let animation = animation.map_err(|error| with_hint(args, error))?;
+    if args.exposure.is_some() && !animation.shows_colour() {
+        return Err(misuse(
+            "--exposure changes light, and this scene has none; give it a [disk.light] or a [sky], or leave \
+             --exposure out",
+        ));
     }
     memory::check(args.max_memory, animation.image(), Form::Grey8)?;
     Ok(animation)
 }
 
-/// The frames, all of which the animation has.
+/// The values that the options give to keys of the scene.
+fn overrides(args: &RenderArgs) -> Vec<Override> {
+    let mut overrides = args.set.clone();
+    let numbers = [
+        ("radius", "camera.radius", args.radius),
+        ("inclination", "camera.inclination", args.inclination),
+        ("azimuth", "camera.azimuth", args.azimuth),
+        ("fov", "camera.fov", args.fov),
+        ("tolerance", "image.tolerance", args.tolerance),
+        ("exposure", "image.exposure", args.exposure),
+    ];
+    overrides.extend(numbers.into_iter().filter_map(|(flag, key, number)| {
+        let number = number?;
+        Some(Override::new(format!("--{flag} {number}"), key, number))
+    }));
+    if let Some(ImageSize { width, height }) = args.size {
+        for (key, side) in [("image.width", width), ("image.height", height)] {
+            let flag = format!("--size {width}x{height}");
+            overrides.push(Override::new(flag, key, i64::from(side)));
+        }
+    }
+    if let Some(smooth) = args.antialias {
+        let flag = format!("--antialias {smooth}");
+        overrides.push(Override::new(flag, "image.antialias", smooth));
+    }
+    if let Some(bits) = args.bits {
+        let flag = format!("--bits {bits}");
+        overrides.push(Override::new(flag, "image.bits", i64::from(bits)));
+    }
+    if let Some(names) = &args.layers {
+        let flag = format!("--layers {}", names.join(","));
+        overrides.push(Override::new(flag, "image.layers", names.clone()));
+    }
+    overrides
+}
+
+/// The error of a scene that cannot be read. Who gave an output's name there is told of `-o`.
+fn with_hint(args: &RenderArgs, error: SceneError) -> anyhow::Error {
+    let name = args.scene.display();
+    let is_output = Format::of_extension(&args.scene).is_some();
+    match error {
+        SceneError::Unknown { .. } | SceneError::Read { .. } if is_output => misuse(format!(
+            "{error}. To name the output, write -o before it: -o {name}"
+        )),
+        error => error.into(),
+    }
+}
+
+/// All frames of the animation.
+pub(super) fn all_frames(animation: &Animation) -> FrameRange {
+    FrameRange::all(animation.first(), animation.last())
+}
+
+/// The frames that are asked for and that the animation has. Prints which others are asked for.
 ///
 /// # Errors
-/// It has not.
+/// It has none of them.
 pub(super) fn frames(args: &RenderArgs, animation: &Animation) -> anyhow::Result<FrameRange> {
-    let all = FrameRange::up_to(animation.frames());
-    let range = args.frames.clone().unwrap_or(all);
-    let (number, frames) = (range.last(), animation.frames());
-    if number > frames {
-        let error = SceneError::NoFrame { number, frames };
-        return Err(misuse(format!("--frames {range}: {error}")));
+    let all = all_frames(animation);
+    let Some(asked) = &args.frames else {
+        return Ok(all);
+    };
+    let (first, last) = (animation.first(), animation.last());
+    let Some(range) = asked.within(first, last) else {
+        let number = asked.last();
+        let error = SceneError::NoFrame {
+            number,
+            first,
+            last,
+        };
+        return Err(misuse(format!("--frames {asked}: {error}")));
+    };
+    if asked.last() > last || asked.first() < Some(first) {
+        warn(format_args!(
+            "--frames {asked}: the animation's frames are {all}; those beyond are left out"
+        ));
     }
     Ok(range)
 }

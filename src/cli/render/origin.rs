@@ -10,18 +10,24 @@ pub(super) struct FrameOrigin {
     /// The SHA-256 of each of the sky's files, where the frame shows any.
     pub(super) sky: Option<String>,
     /// The frame's number.
-    pub(super) frame: u32,
+    pub(super) frame: i64,
 }
 
 /// The key of the program's name and version.
 pub(super) const SOFTWARE: &str = "Software";
 
+/// The first bytes of a file, in which it says that this program made it.
+pub(super) const HEAD: usize = 4096;
+
 /// The program's name and version.
 pub(super) const PROGRAM: &str = concat!("darkness ", env!("CARGO_PKG_VERSION"));
 
+/// How [`PROGRAM`] begins in every version.
+pub(super) const ANY_VERSION: &str = "darkness ";
+
 impl FrameOrigin {
     /// The origin of another frame of the same animation.
-    pub(super) fn of_frame(&self, frame: u32) -> Self {
+    pub(super) fn of_frame(&self, frame: i64) -> Self {
         Self {
             frame,
             ..self.clone()
@@ -46,13 +52,35 @@ pub(super) mod tests {
     use super::*;
 
     /// The origin of a frame.
-    pub(in super::super) fn origin(frame: u32) -> FrameOrigin {
+    pub(in super::super) fn origin(frame: i64) -> FrameOrigin {
         FrameOrigin {
             scene: "5c".repeat(32),
             table: "none".into(),
             sky: None,
             frame,
         }
+    }
+
+    /// Asserts that `is_ours` takes a frame's file for this program's, damaged beyond its head too, and takes no other
+    /// file, nor one that another program or none names itself in.
+    pub(in super::super) fn assert_only_ours_is_taken(
+        file: &[u8],
+        is_ours: impl Fn(&[u8]) -> bool,
+    ) {
+        let head = &file[..file.len().min(HEAD)];
+        assert!(is_ours(head));
+        let mut damaged = head.to_vec();
+        *damaged.last_mut().unwrap() ^= 255;
+        assert!(is_ours(&damaged));
+        for length in [0, 1, 4, 8, 30] {
+            assert!(!is_ours(&head[..length]), "{length}");
+        }
+        for at in 0..4 {
+            let mut foreign = head.to_vec();
+            foreign[at] ^= 1;
+            assert!(!is_ours(&foreign), "byte {at}");
+        }
+        assert!(!is_ours(&vec![b'd'; HEAD]));
     }
 
     /// Asserts that `made` takes a frame's file for that frame's, and neither with any damage nor for another's.

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::super::destination::Destination;
 use super::super::frame_range::FrameRange;
@@ -82,6 +82,7 @@ impl<'a> Plan<'a> {
             animation.check(number)?;
         }
         let sky = animation.sky().filter(|_| form.shows_light());
+        sky::check_files(sky)?;
         // Films record nothing.
         let sky_fingerprint = sky::fingerprint(sky.filter(|_| !format.is_film()))?;
         let plan = Self {
@@ -98,6 +99,13 @@ impl<'a> Plan<'a> {
             sky_fingerprint,
             inputs,
         };
+        // The files of a sequence are checked when its folder is listed.
+        if let Destination::File(path) = &plan.destination
+            && !args.dry_run
+            && plan.is_refused(path)
+        {
+            return Err(sequence::foreign([path.clone()].into_iter()));
+        }
         Ok((plan, checked))
     }
 
@@ -113,12 +121,14 @@ impl<'a> Plan<'a> {
         let print = |out: &mut dyn Write| {
             for number in self.frames.iter() {
                 let is_finished = |origin| self.is_finished(number, origin);
+                let file = self.destination.file(number);
                 let state = if origin.as_ref().is_some_and(is_finished) {
                     "finished"
+                } else if self.is_refused(&file) {
+                    "in the way"
                 } else {
                     "to draw"
                 };
-                let file = self.destination.file(number);
                 writeln!(out, "{number}\t{state}\t{}", file.display())?;
             }
             out.flush()
@@ -128,7 +138,7 @@ impl<'a> Plan<'a> {
     }
 
     /// Whether a frame of a sequence is there already, and is to be kept.
-    pub(super) fn is_finished(&self, number: u32, origin: &FrameOrigin) -> bool {
+    pub(super) fn is_finished(&self, number: i64, origin: &FrameOrigin) -> bool {
         match &self.destination {
             Destination::Sequence(pattern) if !self.args.overwrite => {
                 let origin = origin.of_frame(number);
@@ -177,6 +187,26 @@ impl<'a> Plan<'a> {
             (Format::Npz, Pixels::Planes(planes)) => npz::encode(planes, size, origin),
             _ => png::encode(pixels, size, self.depth() == 1, origin),
         }
+    }
+
+    /// Whether a file, by its first bytes, is one that this program made.
+    pub(super) fn is_ours(&self) -> fn(&[u8]) -> bool {
+        match self.format {
+            Format::Exr => exr::is_ours,
+            Format::Npz => npz::is_ours,
+            _ => png::is_ours,
+        }
+    }
+
+    /// Whether a frame's file is another program's, and is not to be replaced: where the user did not name this very
+    /// file.
+    fn is_refused(&self, file: &Path) -> bool {
+        let is_named = match self.destination {
+            Destination::Sequence(_) => false,
+            Destination::File(_) => self.format.is_film() || self.args.output.is_some(),
+            Destination::Stdout | Destination::Device(_) => true,
+        };
+        !is_named && !self.args.overwrite && sequence::is_foreign(file, self.is_ours())
     }
 
     /// Whether a file is whole, and what [`Self::encode`] makes of this origin.

@@ -14,7 +14,7 @@ use png::{
 };
 
 use super::memory;
-use super::origin::FrameOrigin;
+use super::origin::{ANY_VERSION, FrameOrigin, SOFTWARE};
 use crate::render::Pixels;
 use crate::scene::ImageSize;
 
@@ -23,6 +23,13 @@ const ENCODER_MEMORY: usize = 4 << 20;
 
 /// The first bytes of every PNG file.
 const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1A\n";
+
+/// Whether a file that begins with `head` is a PNG file that some version of this program made.
+pub(super) fn is_ours(head: &[u8]) -> bool {
+    let text = [b"tEXt", SOFTWARE.as_bytes(), b"\0", ANY_VERSION.as_bytes()].concat();
+    let has_text = |rest: &[u8]| rest.windows(text.len()).any(|window| window == text);
+    head.strip_prefix(&SIGNATURE).is_some_and(has_text)
+}
 
 /// Whether `file` is a whole PNG file of `depth` bits a sample, with correct checksums, that this version of the
 /// program made of `origin`.
@@ -173,7 +180,9 @@ fn byte(pixels: [u8; 8]) -> u8 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::origin::tests::{assert_no_other_is_taken, origin};
+    use super::super::origin::tests::{
+        assert_no_other_is_taken, assert_only_ours_is_taken, origin,
+    };
     use super::*;
 
     /// What a decoder makes of a file: its header, and its samples.
@@ -272,5 +281,6 @@ mod tests {
         assert!(made(&file, 8, &origin(12)));
         assert!(!made(&file, 1, &origin(12)));
         assert_no_other_is_taken(&file, &origin(12), |file, origin| made(file, 8, origin));
+        assert_only_ours_is_taken(&file, is_ours);
     }
 }

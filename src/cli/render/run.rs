@@ -1,7 +1,6 @@
 //! The run: frames are drawn, written and counted.
 
 use std::convert::Infallible;
-use std::fs;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -12,7 +11,7 @@ use super::super::destination::Destination;
 use super::super::interrupt::Interrupt;
 use super::super::method::Method;
 use super::super::pattern::Pattern;
-use super::super::progress::{FrameProgress, ProgressKind, Report};
+use super::super::progress::{FrameProgress, ProgressKind, Report, warn};
 use super::super::writable;
 use super::draw::{DrawnFrame, FrameReport, FrameSource};
 use super::film::{Broken, Film};
@@ -20,12 +19,16 @@ use super::memory;
 use super::origin::FrameOrigin;
 use super::plan::Plan;
 use super::run_stats::RunStats;
-use super::{sequence, sky};
+use super::sequence::{self, Survey};
+use super::{options, sky};
+use crate::output::make_folder;
 use crate::sky::SkySource;
 
 /// What a run did.
 pub(super) struct Outcome {
     pub(super) stats: RunStats,
+    /// How many threads drew frames of their own.
+    pub(super) threads: usize,
     /// What reading the sky took, where it was read.
     pub(super) reading_sky: Option<Duration>,
     /// From the first frame to the last.
@@ -50,7 +53,8 @@ pub(super) fn run(plan: &Plan<'_>, method: &Method, report: Report) -> anyhow::R
     let sky = read_sky(plan, &origin, report)?;
     let reading_sky = sky.as_ref().map(|_| start.elapsed());
     let sky_bytes = sky.as_ref().map_or(0, |sky| sky::bytes(sky));
-    let most_memory = ByteSize(plan.args.max_memory.as_u64().saturating_sub(sky_bytes));
+    let left = ByteSize(plan.args.max_memory.as_u64().saturating_sub(sky_bytes));
+    let at_a_time = memory::frames_in(left, plan.first.image(), plan.form);
     let start = Instant::now();
     let (animation, form) = (plan.animation, plan.form);
     let stats = FrameSource::with(animation, form, method, sky, &row_done, |frames| {
@@ -65,7 +69,7 @@ pub(super) fn run(plan: &Plan<'_>, method: &Method, report: Report) -> anyhow::R
             plan,
             frames,
             origin,
-            most_memory,
+            at_a_time,
             progress: report.frames(kind, plan.count, plan.pixels()),
             stats: RunStats::default(),
             interrupt: &interrupt,
@@ -82,6 +86,7 @@ pub(super) fn run(plan: &Plan<'_>, method: &Method, report: Report) -> anyhow::R
     })?;
     Ok(Outcome {
         stats,
+        threads: FrameSource::threads(plan.count, at_a_time),
         reading_sky,
         elapsed: start.elapsed(),
         interrupt,
@@ -113,13 +118,28 @@ fn prepare(
     origin: &FrameOrigin,
 ) -> anyhow::Result<()> {
     let folder = pattern.folder();
-    fs::create_dir_all(folder).map_err(|error| {
+    make_folder(folder).map_err(|error| {
         anyhow::anyhow!(
             "{}: the folder cannot be made: {error}; choose another place with -o",
             folder.display()
         )
     })?;
-    let present = sequence::clean_and_count(pattern, plan.frames);
+    let all = options::all_frames(plan.animation);
+    let Survey {
+        present,
+        foreign,
+        left_over,
+    } = sequence::survey(pattern, plan.frames, &all, plan.is_ours());
+    let files = |numbers: Vec<i64>| numbers.into_iter().map(|number| pattern.file(number));
+    if !foreign.is_empty() && !plan.args.overwrite {
+        return Err(sequence::foreign(files(foreign)));
+    }
+    if !left_over.is_empty() {
+        warn(format_args!(
+            "{}: left from before, and no frame of the animation, whose frames are {all}",
+            sequence::list(files(left_over))
+        ));
+    }
     let missing = plan.count.saturating_sub(present);
     let most = missing.saturating_mul(plan.most_bytes());
     if writable::free_space(folder).is_some_and(|free| most > free) {
@@ -150,8 +170,8 @@ struct Run<'a> {
     plan: &'a Plan<'a>,
     frames: &'a FrameSource<'a>,
     origin: FrameOrigin,
-    /// What the frames drawn at a time may take.
-    most_memory: ByteSize,
+    /// How many frames may be drawn at a time.
+    at_a_time: u64,
     progress: FrameProgress,
     stats: RunStats,
     interrupt: &'a Interrupt,
@@ -161,7 +181,7 @@ impl Run<'_> {
     /// Draws the frames that are `wanted`, until the run is interrupted.
     fn draw<E: Send>(
         &self,
-        wanted: impl Fn(u32) -> bool + Sync,
+        wanted: impl Fn(i64) -> bool + Sync,
         done: impl Fn(DrawnFrame<'_>) -> Result<(), E> + Sync,
     ) -> Result<(), E> {
         let plan = self.plan;
@@ -169,9 +189,8 @@ impl Run<'_> {
             .frames
             .iter()
             .take_while(|_| !self.interrupt.is_asked());
-        let at_a_time = memory::frames_in(self.most_memory, plan.first.image(), plan.form);
         self.frames
-            .draw_all(numbers, plan.count, at_a_time, wanted, done)
+            .draw_all(numbers, plan.count, self.at_a_time, wanted, done)
     }
 
     /// Draws one frame into one file, or to the standard output.
@@ -195,7 +214,7 @@ impl Run<'_> {
         // The reason without the frame's own file name: equal reasons of many frames are reported together.
         let write = |number, file: &[u8]| {
             sequence::write(&pattern.file(number), file, &self.plan.inputs)
-                .map_err(|error| anyhow::anyhow!("{pattern} cannot be written: {error}"))
+                .map_err(|error| anyhow::anyhow!("cannot be written: {error}"))
         };
         let done = |drawn: DrawnFrame<'_>| {
             let number = drawn.number;
@@ -210,7 +229,7 @@ impl Run<'_> {
     fn encode_and_write(
         &self,
         DrawnFrame { number, pixels, .. }: DrawnFrame<'_>,
-        write: impl Fn(u32, &[u8]) -> anyhow::Result<()>,
+        write: impl Fn(i64, &[u8]) -> anyhow::Result<()>,
     ) -> anyhow::Result<()> {
         let (pixels, effort) = pixels?;
         let start = Instant::now();
@@ -248,7 +267,7 @@ impl Run<'_> {
         film.finish()
     }
 
-    fn done(&self, number: u32, effort: FrameReport, encoding: Duration, writing: Duration) {
+    fn done(&self, number: i64, effort: FrameReport, encoding: Duration, writing: Duration) {
         self.stats.drawn(number, effort, encoding, writing);
         self.progress.done();
     }

@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use super::super::destination::Destination;
+use super::super::progress::count;
 use super::draw::FrameReport;
 
 /// Counts, times and failures of frames, which several threads report.
@@ -21,18 +23,18 @@ pub(super) struct Counts {
     /// Frames whose curves were not accurate enough.
     pub(super) ray_by_ray: u64,
     /// The frame with the largest error of an edge, the first of equals.
-    pub(super) worst: Option<(u32, FrameReport)>,
-    /// Times summed over all threads: for curves, pixels, encoding and writing.
-    pub(super) times: [Duration; 4],
-    /// The numbers of the frames that failed, by reason.
-    failures: BTreeMap<String, Vec<u32>>,
+    pub(super) worst: Option<(i64, FrameReport)>,
+    /// Times summed over all threads: for the frames' memory, curves, pixels, encoding and writing.
+    pub(super) times: [Duration; 5],
+    /// The numbers of the frames that failed, by what is wrong with their files.
+    failures: BTreeMap<String, Vec<i64>>,
 }
 
 impl RunStats {
     /// Counts a frame that was drawn, encoded and written.
     pub(super) fn drawn(
         &self,
-        number: u32,
+        number: i64,
         effort: FrameReport,
         encoding: Duration,
         writing: Duration,
@@ -40,7 +42,13 @@ impl RunStats {
         let mut counts = self.counts();
         counts.drawn += 1;
         counts.ray_by_ray += u64::from(effort.ray_by_ray);
-        let times = [effort.curves, effort.pixels, encoding, writing];
+        let times = [
+            effort.memory,
+            effort.curves,
+            effort.pixels,
+            encoding,
+            writing,
+        ];
         for (sum, time) in counts.times.iter_mut().zip(times) {
             *sum += time;
         }
@@ -59,7 +67,7 @@ impl RunStats {
     }
 
     /// Counts a frame that could not be drawn or written.
-    pub(super) fn failed(&self, number: u32, reason: &impl ToString) {
+    pub(super) fn failed(&self, number: i64, reason: &impl ToString) {
         let mut counts = self.counts();
         let numbers = counts.failures.entry(reason.to_string()).or_default();
         numbers.push(number);
@@ -74,24 +82,29 @@ impl RunStats {
 
 impl Counts {
     /// The frames that failed, by reason, in words; [`None`] if none did.
-    pub(super) fn failures(&self) -> Option<String> {
+    pub(super) fn failures(&self, destination: &Destination) -> Option<String> {
         if self.failures.is_empty() {
             return None;
         }
-        let count: usize = self.failures.values().map(Vec::len).sum();
-        let noun = if count == 1 { "frame" } else { "frames" };
-        let mut text = format!("{count} {noun} failed; the same command tries them again:");
+        let failed: usize = self.failures.values().map(Vec::len).sum();
+        let again = if failed == 1 { "it" } else { "them" };
+        let frames = count(failed as u64, "frame");
+        let mut text = format!("{frames} failed; the same command tries {again} again:");
         for (reason, numbers) in &self.failures {
             let mut numbers = numbers.clone();
             numbers.sort_unstable();
-            let _ = write!(text, "\n  {}: {reason}", ranges(&numbers));
+            let name = match numbers.as_slice() {
+                [only] => destination.file(*only).display().to_string(),
+                _ => destination.to_string(),
+            };
+            let _ = write!(text, "\n  {}: {name}: {reason}", ranges(&numbers));
         }
         Some(text)
     }
 }
 
 /// Formats rising numbers as an argument of `--frames`: `3-5,9`.
-fn ranges(numbers: &[u32]) -> String {
+fn ranges(numbers: &[i64]) -> String {
     let runs = numbers.chunk_by(|a, b| a + 1 == *b);
     let text: Vec<String> = runs
         .map(|run| match run {
@@ -105,19 +118,23 @@ fn ranges(numbers: &[u32]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::pattern::Pattern;
     use super::*;
 
     #[test]
     fn failures_are_listed_by_reason_in_ranges_that_can_be_asked_for_again() {
         let stats = RunStats::default();
-        assert_eq!(stats.counts().failures(), None);
+        let pattern = Pattern::parse("out/f_##.png".as_ref()).unwrap().unwrap();
+        let destination = Destination::Sequence(pattern);
+        assert_eq!(stats.counts().failures(&destination), None);
         for number in [9, 3, 5, 4] {
             stats.failed(number, &"the disk is full");
         }
         stats.failed(7, &"no right");
         assert_eq!(
-            stats.counts().failures().unwrap(),
-            "5 frames failed; the same command tries them again:\n  7: no right\n  3-5,9: the disk is full"
+            stats.counts().failures(&destination).unwrap(),
+            "5 frames failed; the same command tries them again:\n  \
+             7: out/f_07.png: no right\n  3-5,9: out/f_##.png: the disk is full"
         );
     }
 }

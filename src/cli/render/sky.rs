@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 use std::fs::{self, File};
-use std::io::{BufRead, BufReader};
+use std::io::{self, BufRead, BufReader};
 use std::path::Path;
 
 use bytesize::ByteSize;
@@ -31,6 +31,24 @@ pub(in crate::cli) fn files(
     let panorama = panorama.map(|file| (file, "panorama"));
     let catalogue = catalogue.map(|file| (file, "star catalogue"));
     panorama.into_iter().chain(catalogue)
+}
+
+/// Checks that the files of a sky are there.
+///
+/// # Errors
+/// One is not.
+pub(super) fn check_files(sky: Option<&Sky>) -> anyhow::Result<()> {
+    for (file, what) in files(sky) {
+        if let Err(error) = fs::metadata(&file.path)
+            && error.kind() == io::ErrorKind::NotFound
+        {
+            let path = file.path.display();
+            return Err(misuse(format!(
+                "{what} {path}: the file cannot be read: {error}"
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// Returns the SHA-256 of each file of a sky; [`None`] for a sky without files.

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::super::destination::Destination;
 use super::super::method::Method;
-use super::super::progress::{Report, duration, warn};
+use super::super::progress::{Report, count, duration, warn};
 use super::draw::FrameReport;
 use super::plan::Plan;
 use super::run::Outcome;
@@ -35,9 +35,13 @@ pub(super) fn report(
             Destination::Sequence(_) => "; the same command continues from there",
             _ => "; an unfinished file is not kept",
         };
-        format!("{finished} of {} frames are finished{rest}", plan.count)
+        let verb = if plan.count == 1 { "is" } else { "are" };
+        format!(
+            "{finished} of {} {verb} finished{rest}",
+            count(plan.count, "frame")
+        )
     });
-    match (counts.failures(), &interrupted) {
+    match (counts.failures(&plan.destination), &interrupted) {
         (Some(failures), Ok(())) => anyhow::bail!("{failures}"),
         (Some(failures), Err(_)) => warn(failures),
         (None, _) => {}
@@ -47,23 +51,31 @@ pub(super) fn report(
     let (destination, size) = (&plan.destination, plan.first.image());
     let what = format!("{} × {}, {method}", size.width, size.height);
     let time = duration(outcome.elapsed);
-    if drawn == 0 {
-        let all = if kept == 1 {
-            "the frame was"
-        } else {
-            "all frames were"
+    if plan.count == 1 {
+        let number = plan.frames.iter().next().unwrap_or(1);
+        let file = match destination {
+            Destination::Sequence(pattern) => pattern.file(number).display().to_string(),
+            _ => destination.to_string(),
         };
-        report.note(format_args!("{destination}: {all} finished before"));
-    } else if plan.count == 1 {
-        report.note(format_args!("{destination}: {what}, drawn in {time}"));
+        if drawn == 0 {
+            report.note(format_args!("{file}: the frame was finished before"));
+        } else {
+            report.note(format_args!("{file}: {what}, drawn in {time}"));
+        }
+    } else if drawn == 0 {
+        report.note(format_args!(
+            "{destination}: all frames were finished before"
+        ));
     } else {
         let rate = drawn as f64 / outcome.elapsed.as_secs_f64();
         let before = match kept {
             0 => String::new(),
+            1 => "; 1 was finished before".into(),
             kept => format!("; {kept} were finished before"),
         };
         report.note(format_args!(
-            "{destination}: {drawn} frames of {what}, in {time}, {rate:.1} frames/s{before}"
+            "{destination}: {} of {what}, in {time}, {rate:.1} frames/s{before}",
+            count(drawn, "frame")
         ));
     }
     Ok(())
@@ -114,16 +126,28 @@ fn report_errors(plan: &Plan<'_>, counts: &Counts, report: Report) {
     }
 }
 
-/// Prints the times of the parts of the work, those of frames summed over all threads.
+/// Prints the times of the parts of the work, which add up to the first line's: the time of all threads that drew
+/// frames of their own.
 fn print_timings(counts: &Counts, outcome: &Outcome) {
-    let sky = outcome.reading_sky.map(|time| ("reading the sky", time));
-    let frames = ["curves", "render", "encode", "write"]
-        .into_iter()
-        .zip(counts.times);
-    let all = ("all, from the first frame to the last", outcome.elapsed);
-    let lines = sky.into_iter().chain(frames).chain([all]);
+    let (threads, sky) = (outcome.threads as u32, outcome.reading_sky);
+    let by_the_clock = outcome.elapsed + sky.unwrap_or_default();
+    let drawing = outcome.elapsed * threads;
+    let all = drawing + sky.unwrap_or_default();
+    let rest = drawing.saturating_sub(counts.times.iter().sum());
+    let names = ["memory", "curves", "render", "encode", "write"];
+    let lines = (sky.into_iter().map(|time| ("reading the sky", time)))
+        .chain(names.into_iter().zip(counts.times))
+        .chain([("waiting and the rest", rest)]);
     let mut stderr = io::stderr();
+    let on_threads = match threads {
+        1 => String::new(),
+        _ => format!(
+            " on {threads} threads, {} by the clock",
+            duration(by_the_clock)
+        ),
+    };
+    let _ = writeln!(stderr, "{:>10}  in all{on_threads}", duration(all));
     for (name, time) in lines {
-        let _ = writeln!(stderr, "{:>10}  {name}", duration(time));
+        let _ = writeln!(stderr, "{:>10}    {name}", duration(time));
     }
 }

@@ -40,7 +40,7 @@ impl<'a, A: SweptAngles> Curved<'a, A> {
     }
 
     /// Returns the block that a frame is in.
-    fn block(&self, number: u32) -> Arc<Block> {
+    fn block(&self, number: i64) -> Arc<Block> {
         let mut kept = locked(&self.block);
         match &*kept {
             Some(block) if block.has(number) => Arc::clone(block),
@@ -55,7 +55,7 @@ impl<'a, A: SweptAngles> Curved<'a, A> {
 impl<A: SweptAngles> Frames for Curved<'_, A> {
     fn draw(
         &self,
-        number: u32,
+        number: i64,
         on_all_threads: bool,
         workspace: &mut Workspace,
         memory: &mut FrameMemory,
@@ -64,7 +64,9 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
         let scene = self.animation.frame(number)?;
         let view = View::new(&scene);
         let form = memory.form();
+        let begun = Instant::now();
         let target = memory.target(&view)?;
+        let memory = begun.elapsed();
         let block = self.block(number);
         let source = self.sky.source(&scene, form)?;
         let (own, own_map, own_sky);
@@ -102,10 +104,11 @@ impl<A: SweptAngles> Frames for Curved<'_, A> {
             angles: self.angles,
             threads,
         };
-        let time = start.elapsed();
+        let curves = start.elapsed().saturating_sub(memory);
         let report = frame.draw(workspace, target)?;
         Ok(FrameReport {
-            curves: time,
+            memory,
+            curves,
             ..report
         })
     }

@@ -51,7 +51,7 @@ pub trait Frames: Sync {
     /// [`FrameError`] if there is no such frame, or if it cannot be drawn.
     fn draw(
         &self,
-        number: u32,
+        number: i64,
         on_all_threads: bool,
         workspace: &mut Workspace,
         memory: &mut FrameMemory,
@@ -73,7 +73,7 @@ pub enum FrameError {
 #[derive(Debug)]
 pub struct DrawnFrame<'a> {
     /// Its number in the animation.
-    pub number: u32,
+    pub number: i64,
     /// The number of frames that were begun before it.
     pub place: u64,
     /// Its pixels, row by row from the top.
@@ -91,9 +91,9 @@ pub struct DrawnFrame<'a> {
 pub fn draw<E: Send>(
     frames: &(impl Frames + ?Sized),
     form: Form,
-    numbers: impl Iterator<Item = u32> + Send,
+    numbers: impl Iterator<Item = i64> + Send,
     sharing: Sharing,
-    wanted: impl Fn(u32) -> bool + Sync,
+    wanted: impl Fn(i64) -> bool + Sync,
     done: impl Fn(DrawnFrame<'_>) -> Result<(), E> + Sync,
 ) -> Result<(), E> {
     let side_by_side = sharing == Sharing::SideBySide;

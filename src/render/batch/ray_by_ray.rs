@@ -44,7 +44,7 @@ impl<'a, O: Orbits> RayByRay<'a, O> {
 impl<O: Orbits> Frames for RayByRay<'_, O> {
     fn draw(
         &self,
-        number: u32,
+        number: i64,
         _: bool,
         _: &mut Workspace,
         memory: &mut FrameMemory,
@@ -53,6 +53,8 @@ impl<O: Orbits> Frames for RayByRay<'_, O> {
         let scene = self.animation.frame(number)?;
         let view = View::new(&scene);
         let form = memory.form();
+        let target = memory.target(&view)?;
+        let memory = start.elapsed();
         let source = self.sky.source(&scene, form)?;
         let radius = if form.needs_escape(&scene) {
             let radius = SkyAtRadius::from_orbits(&scene, &view, source, self.orbits);
@@ -70,9 +72,10 @@ impl<O: Orbits> Frames for RayByRay<'_, O> {
             colours: self.colours.of(&scene, form),
             sky: sky.as_ref(),
         };
-        frame.draw(self.row_done, memory.target(&view)?)?;
+        frame.draw(self.row_done, target)?;
         Ok(FrameReport {
-            pixels: start.elapsed(),
+            memory,
+            pixels: start.elapsed().saturating_sub(memory),
             ..FrameReport::default()
         })
     }

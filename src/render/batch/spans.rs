@@ -10,7 +10,7 @@ use crate::render::sky::SkyAtRadius;
 use crate::scene::{Animation, View};
 
 /// The number of frames in a block.
-const BLOCK: u32 = 256;
+const BLOCK: i64 = 256;
 
 /// The greatest ratio of the pixel sizes in a span. Smaller pixels need finer curves. Up to this ratio, sharing the
 /// finer ones is cheaper than building both.
@@ -19,15 +19,15 @@ const MAX_PIXEL_RATIO: f64 = 2.0;
 /// A block of frames and its spans.
 #[derive(Debug)]
 pub(super) struct Block {
-    number: u32,
+    first: i64,
     spans: Vec<Span>,
 }
 
 /// Successive frames with the same curves.
 #[derive(Debug)]
 pub(super) struct Span {
-    first: u32,
-    last: u32,
+    first: i64,
+    last: i64,
     /// What the curves are built for: the union over the frames.
     pub(super) spec: CurveSpec,
     /// The curves, built when a frame first needs them.
@@ -39,16 +39,11 @@ pub(super) struct Span {
 }
 
 impl Block {
-    /// Returns the number of the block that a frame is in.
-    fn of(frame: u32) -> u32 {
-        frame.saturating_sub(1) / BLOCK
-    }
-
-    /// Finds the spans of the block that a frame is in. Invalid frames are in no span.
-    pub(super) fn new(animation: &Animation, frame: u32) -> Self {
-        let number = Self::of(frame);
-        let first = number * BLOCK + 1;
-        let last = first.saturating_add(BLOCK - 1).min(animation.frames());
+    /// Finds the spans of the block that a frame is in. Blocks are counted from the animation's first frame. Invalid
+    /// frames are in no span.
+    pub(super) fn new(animation: &Animation, frame: i64) -> Self {
+        let first = frame - (frame - animation.first()).rem_euclid(BLOCK);
+        let last = (first + BLOCK - 1).min(animation.last());
         let mut spans: Vec<Span> = Vec::new();
         // The pixel size of the span's first frame. Comparing with it, not with the last frame, bounds a slow zoom too.
         let mut pixel = 0.0;
@@ -76,16 +71,16 @@ impl Block {
                 });
             }
         }
-        Self { number, spans }
+        Self { first, spans }
     }
 
     /// Returns whether a frame is in this block.
-    pub(super) fn has(&self, frame: u32) -> bool {
-        self.number == Self::of(frame)
+    pub(super) fn has(&self, frame: i64) -> bool {
+        (self.first..self.first + BLOCK).contains(&frame)
     }
 
     /// Returns the span that a frame is in.
-    pub(super) fn span(&self, frame: u32) -> Option<&Span> {
+    pub(super) fn span(&self, frame: i64) -> Option<&Span> {
         let after = self.spans.partition_point(|span| span.first <= frame);
         let span = self.spans.get(after.checked_sub(1)?)?;
         (frame <= span.last).then_some(span)
@@ -103,10 +98,10 @@ impl Span {
 mod tests {
     use super::*;
 
-    fn spans(animation: &Animation) -> Vec<(u32, u32)> {
+    fn spans(animation: &Animation) -> Vec<(i64, i64)> {
         let mut spans = Vec::new();
-        let mut next = 1;
-        while next <= animation.frames() {
+        let mut next = animation.first();
+        while next <= animation.last() {
             let block = Block::new(animation, next);
             let span = block.span(next).unwrap();
             assert!(block.has(next) && span.first == next);

@@ -2,7 +2,8 @@
 //!
 //! ```toml
 //! [animation]
-//! frames = 240                            # required; they are numbered from 1
+//! frames = 240                            # required
+//! first = 1                               # default; the first frame's number, which may be 0 or negative
 //! fps = 24                                # default; frames a second, for films
 //! interpolation = "smooth"                # default; or "linear"
 //! # Each of the three a number or [from, to]; degrees, the inclination from +z.
@@ -40,7 +41,7 @@ use glam::DVec3;
 
 use super::checked::Scene;
 use super::error::SceneError;
-use super::file::{Interpolation, KeyframeTable, SceneFile};
+use super::file::{AnimationTable, Interpolation, KeyframeTable, SceneFile};
 use super::validate;
 use super::values::{Camera, Disk, ImageSettings};
 use super::vector::cosine;
@@ -53,10 +54,14 @@ use track::Track;
 /// The most frames of an animation.
 pub const MAX_FRAMES: u32 = 100_000_000;
 
-/// A scene for each frame. Frames are numbered from 1; a still scene is an animation of one frame.
+/// The largest number of an animation's first frame; the smallest is its opposite.
+pub const MAX_FIRST: i64 = 1_000_000_000;
+
+/// A scene for each frame. Frames are numbered from [`Self::first`] on; a still scene is an animation of one frame, 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Animation {
     file: SceneFile,
+    first: i64,
     frames: u32,
     rate: Rate,
     position: Position,
@@ -101,40 +106,36 @@ impl Animation {
     /// [`SceneError`] for what is wrong with every frame; in a still scene, for all that is wrong.
     pub(super) fn new(mut file: SceneFile) -> Result<Self, SceneError> {
         let settings = file.settings()?;
+        let has_angles = file.camera.normalise(settings.size)?;
         let table = file.animation.take();
-        let (frames, rate) = match &table {
-            Some(table) => (frames(table.frames)?, Rate::new(table.fps)?),
-            None => (1, Rate::default()),
+        let (first, frames, rate) = match &table {
+            Some(table) => {
+                let frames = frames(table.frames)?;
+                (first(table.first)?, frames, Rate::new(table.fps)?)
+            }
+            None => (1, 1, Rate::default()),
         };
+        let last = first + i64::from(frames) - 1;
         let interpolation = table
             .as_ref()
             .map_or(Interpolation::Linear, |table| table.interpolation);
         let keyframes: &[KeyframeTable] = table.as_ref().map_or(&[], |table| &table.keyframe);
-        check_order(keyframes, frames)?;
+        check_order(keyframes, first, last)?;
         let orbit = table.as_ref().and_then(|table| table.orbit.as_ref());
-        let orbit = orbit.map(|orbit| OrbitPath::new(orbit, frames, interpolation));
+        let orbit = orbit.map(|orbit| OrbitPath::new(orbit, first, last, interpolation));
+        let orbit = orbit.transpose()?;
 
         let keys = Keyframes {
             keyframes,
             interpolation,
         };
         let position = keys.vectors("animation.keyframe.position", |keyframe| keyframe.position)?;
-        let position = match (orbit, position.as_slice(), file.camera.position) {
-            (Some(_), [_, ..], _) => {
-                return Err(SceneError::toml(
-                    "animation.orbit and keyframes both set the camera's position; remove one of them",
-                ));
-            }
-            (Some(orbit), [], _) => Position::Orbit(orbit?),
-            (None, [_, ..], _) => Position::new(&position, interpolation)?,
-            (None, [], Some(position)) => Position::still(position)?,
-            (None, [], None) => {
-                return Err(SceneError::toml(
-                    "camera.position is missing; only an animation with an orbit or with positions in its keyframes \
-                     can leave it out",
-                ));
-            }
-        };
+        if has_angles && (orbit.is_some() || !position.is_empty()) {
+            return Err(SceneError::toml(
+                "camera.radius, inclination and azimuth mean nothing where the animation moves the camera; remove them",
+            ));
+        }
+        let position = camera_path(orbit, &position, file.camera.position(), interpolation)?;
         let focus = keys.vectors("animation.keyframe.focus", |keyframe| keyframe.focus)?;
         let up = keys.directions("animation.keyframe.up", |keyframe| keyframe.up)?;
         if !matches!(position, Position::Orbit(_)) {
@@ -172,12 +173,13 @@ impl Animation {
             None => None,
         };
         let animation = Self {
+            first,
             frames,
             rate,
             position,
             focus: Track::or_still(&focus, focus_of_scene.to_array(), interpolation),
             up,
-            fov: Track::or_still(&fov, [file.camera.fov], interpolation),
+            fov: Track::or_still(&fov, [file.camera.fov.degrees()], interpolation),
             disk,
             settings,
             file: SceneFile {
@@ -189,7 +191,7 @@ impl Animation {
             validate::edges(disk.inner, disk.outer)?;
         }
         if animation.is_still() {
-            animation.frame(1)?;
+            animation.first_frame()?;
         }
         Ok(animation)
     }
@@ -197,6 +199,24 @@ impl Animation {
     /// The number of frames.
     pub fn frames(&self) -> u32 {
         self.frames
+    }
+
+    /// The first frame's number.
+    pub fn first(&self) -> i64 {
+        self.first
+    }
+
+    /// The last frame's number.
+    pub fn last(&self) -> i64 {
+        self.first + i64::from(self.frames) - 1
+    }
+
+    /// The scene of the first frame.
+    ///
+    /// # Errors
+    /// Those of [`Self::frame`].
+    pub fn first_frame(&self) -> Result<Scene, SceneError> {
+        self.frame(self.first)
     }
 
     /// The frame rate.
@@ -209,19 +229,39 @@ impl Animation {
         self.file.animation.is_none()
     }
 
+    /// Whether anything moves. Without it all frames are equal.
+    pub fn moves(&self) -> bool {
+        self.frames > 1
+            && self
+                .file
+                .animation
+                .as_ref()
+                .is_some_and(AnimationTable::moves)
+    }
+
+    /// Whether `camera.position` is given and has no effect, since keyframes set the position.
+    pub fn ignores_position(&self) -> bool {
+        let table = self.file.animation.as_ref();
+        let is_set =
+            table.is_some_and(|table| table.keyframe.iter().any(|key| key.position.is_some()));
+        is_set && self.file.camera.position().is_some()
+    }
+
     /// The scene of frame `number`.
     ///
     /// # Errors
-    /// [`SceneError::NoFrame`] for a number outside 1 to [`Self::frames`]; [`SceneError::InFrame`] for a camera that
-    /// is inside the horizon or the disk, or that looks nowhere.
-    pub fn frame(&self, number: u32) -> Result<Scene, SceneError> {
-        if !(1..=self.frames).contains(&number) {
+    /// [`SceneError::NoFrame`] for a number outside [`Self::first`] to [`Self::last`]; [`SceneError::InFrame`] for a
+    /// camera that is inside the horizon or the disk, or that looks nowhere.
+    pub fn frame(&self, number: i64) -> Result<Scene, SceneError> {
+        let (first, last) = (self.first, self.last());
+        if !(first..=last).contains(&number) {
             return Err(SceneError::NoFrame {
                 number,
-                frames: self.frames,
+                first,
+                last,
             });
         }
-        let time = f64::from(number);
+        let time = number as f64;
         let CameraPlace {
             position,
             radius,
@@ -238,28 +278,27 @@ impl Animation {
         };
         let disk = self.disk.as_ref().map(|disk| disk.at(time));
         let (light, sky) = (self.file.light(), self.file.sky.clone());
-        Scene::at_radius(camera, radius, disk, light, sky, self.settings).map_err(|error| {
-            if self.is_still() {
-                error
-            } else {
-                error.in_frame(number)
-            }
-        })
+        let scene = Scene::at_radius(camera, radius, disk, light, sky, self.settings);
+        match scene {
+            Ok(scene) => Ok(scene.rolled(self.file.camera.roll)),
+            Err(error) if self.is_still() => Err(error),
+            Err(error) => Err(error.in_frame(number)),
+        }
     }
 
     /// Checks frame `number`, and that the camera does not pass through the disk on its way to the next frame.
     ///
     /// # Errors
     /// Those of [`Self::frame`], and [`SceneError::InFrame`] for a camera that passes through the disk.
-    pub fn check(&self, number: u32) -> Result<Scene, SceneError> {
+    pub fn check(&self, number: i64) -> Result<Scene, SceneError> {
         let scene = self.frame(number)?;
         let Some(disk) = &self.disk else {
             return Ok(scene);
         };
-        let (mut before, mut after) = (f64::from(number), f64::from(number) + 1.0);
+        let (mut before, mut after) = (number as f64, number as f64 + 1.0);
         let side = |time| cosine(self.position.at(time).position, disk.normal.at(time));
         let first = side(before);
-        if number == self.frames || first * side(after) >= 0.0 {
+        if number == self.last() || first * side(after) >= 0.0 {
             return Ok(scene);
         }
         for _ in 0..50 {
@@ -291,6 +330,31 @@ impl Animation {
     }
 }
 
+/// Chooses the camera's path: an orbit, through keyframes, or at one place.
+fn camera_path(
+    orbit: Option<OrbitPath>,
+    keyframes: &[(f64, [f64; 3])],
+    place: Option<[f64; 3]>,
+    interpolation: Interpolation,
+) -> Result<Position, SceneError> {
+    let problem = match (orbit, keyframes, place) {
+        (Some(orbit), [], None) => return Ok(Position::Orbit(orbit)),
+        (None, [_, ..], _) => return Position::new(keyframes, interpolation),
+        (None, [], Some(position)) => return Position::still(position),
+        (Some(_), [_, ..], _) => {
+            "animation.orbit and keyframes both set the camera's position; remove one of them"
+        }
+        (Some(_), [], Some(_)) => {
+            "camera.position means nothing beside animation.orbit, which moves the camera; remove one of them"
+        }
+        (None, [], None) => {
+            "camera.position is missing; give it, or camera.radius, inclination and azimuth. Only an animation with \
+             an orbit or with positions in its keyframes can leave it out"
+        }
+    };
+    Err(SceneError::toml(problem))
+}
+
 /// Checks the number of frames.
 fn frames(frames: i64) -> Result<u32, SceneError> {
     u32::try_from(frames)
@@ -302,24 +366,32 @@ fn frames(frames: i64) -> Result<u32, SceneError> {
         })
 }
 
+/// Checks the number of the first frame.
+fn first(first: i64) -> Result<i64, SceneError> {
+    let reason = format!("the first frame's number is -{MAX_FIRST} to {MAX_FIRST}");
+    let is_allowed = (-MAX_FIRST..=MAX_FIRST).contains(&first);
+    SceneError::check(is_allowed, "animation.first", first, reason)?;
+    Ok(first)
+}
+
 /// Checks that keyframes are in order and within the animation, and that each sets something.
-fn check_order(keyframes: &[KeyframeTable], frames: u32) -> Result<(), SceneError> {
-    let mut before = 0;
+fn check_order(keyframes: &[KeyframeTable], first: i64, last: i64) -> Result<(), SceneError> {
+    let mut before = None;
     for keyframe in keyframes {
         let number = keyframe.frame;
         let wrong = |reason| SceneError::value("animation.keyframe.frame", number, reason);
-        if number < 1 || number > i64::from(frames) {
-            return Err(wrong(format!("the animation has frames 1 to {frames}")));
+        if !(first..=last).contains(&number) {
+            return Err(wrong(format!("the animation has frames {first} to {last}")));
         }
-        if number <= before {
+        if let Some(before) = before.filter(|&before| number <= before) {
             let reason = format!("it must be above frame {before}, the keyframe before it");
             return Err(wrong(reason));
         }
         if keyframe.is_empty() {
             let error = "the keyframe sets nothing; give it a position, focus, up, fov or normal";
-            return Err(SceneError::toml(error).in_frame(number as u32));
+            return Err(SceneError::toml(error).in_frame(number));
         }
-        before = number;
+        before = Some(number);
     }
     Ok(())
 }
@@ -344,8 +416,7 @@ impl Keyframes<'_> {
         named
             .map(|(number, value)| {
                 for component in value {
-                    validate::finite(key, component)
-                        .map_err(|error| error.in_frame(number as u32))?;
+                    validate::finite(key, component).map_err(|error| error.in_frame(number))?;
                 }
                 Ok((number as f64, value))
             })
@@ -370,7 +441,7 @@ impl Keyframes<'_> {
             let direction = validate::finite_direction(key, value);
             Ok((
                 time,
-                direction.map_err(|error| error.in_frame(time as u32))?,
+                direction.map_err(|error| error.in_frame(time as i64))?,
             ))
         });
         let named: Vec<_> = checked.collect::<Result<_, SceneError>>()?;

@@ -38,7 +38,7 @@ impl Position {
         const KEY: &str = "camera.position";
         let position = validate::finite_vector(KEY, position)?;
         let radius = norm(position);
-        validate::radius(KEY, position, radius)?;
+        validate::radius(KEY, position.to_array(), radius)?;
         Ok(Self::Keyframes {
             times: vec![1.0],
             given: vec![position],
@@ -61,7 +61,8 @@ impl Position {
         let mut directions = Vec::with_capacity(keys.len());
         for (&(time, _), &position) in keys.iter().zip(&given) {
             let radius = norm(position);
-            validate::radius(KEY, position, radius).map_err(|error| error.in_frame(time as u32))?;
+            validate::radius(KEY, position.to_array(), radius)
+                .map_err(|error| error.in_frame(time as i64))?;
             let radius = match radii.last() {
                 Some(&(_, [before])) if (radius - before).abs() <= SAME_RADIUS * before => before,
                 _ => radius,

@@ -12,7 +12,8 @@ fn animation(camera: &str, animation: &str) -> Result<Animation, SceneError> {
 /// Asserts that a sentence with all of `words` refuses the animation or, if not, one of its frames.
 fn refused(camera: &str, text: &str, words: &[&str]) {
     let checked = animation(camera, text).and_then(|animation| {
-        (1..=animation.frames()).try_for_each(|number| animation.check(number).map(drop))
+        (animation.first()..=animation.last())
+            .try_for_each(|number| animation.check(number).map(drop))
     });
     let message = checked.expect_err(text).to_string();
     for word in words {
@@ -300,7 +301,7 @@ fn an_animation_without_a_disk_passes_through_its_plane_and_turns_no_disk() {
     let keys = "[[animation.keyframe]]\nframe = 1\nposition = [5, 0, 1]\n\
         [[animation.keyframe]]\nframe = 10\nposition = [5, 0, -2]\n";
     let falling = Animation::from_toml(&toml(keys)).unwrap();
-    for number in 1..=falling.frames() {
+    for number in 1..=falling.last() {
         let scene = falling.check(number).unwrap();
         assert!(scene.disk().is_none() && scene.sky() == falling.sky());
     }
@@ -315,4 +316,57 @@ fn an_animation_without_a_disk_passes_through_its_plane_and_turns_no_disk() {
     let message = Animation::from_toml(&toml(&keys).replace("[sky]\ngrid = 15\n", ""));
     let message = message.unwrap_err().to_string();
     assert!(message.contains("neither a disk nor a sky"), "{message}");
+}
+
+#[test]
+fn frames_are_numbered_from_any_number_and_show_the_same() {
+    let keyframes = |frames: [i64; 3]| {
+        let [a, b, c] = frames;
+        format!(
+            "[[animation.keyframe]]\nframe = {a}\nposition = [60, 0, 10]\n\
+             [[animation.keyframe]]\nframe = {b}\nposition = [-20, 0.5, 10]\nnormal = [0, 1, 9]\n\
+             [[animation.keyframe]]\nframe = {c}\nposition = [0, -20, 2]\nup = [0, 1, 1]\n"
+        )
+    };
+    for first in [1001, 0, -5, -1_000_000_000, 1_000_000_000] {
+        for (path, shifted) in [
+            (
+                keyframes([1, 4, 12]),
+                keyframes([first, first + 3, first + 11]),
+            ),
+            (
+                "orbit = { radius = 30, inclination = 80, azimuth = [0, 360] }".into(),
+                String::new(),
+            ),
+            (
+                "orbit = { radius = [30, 9], inclination = 80, azimuth = 5 }".into(),
+                String::new(),
+            ),
+        ] {
+            let shifted = if shifted.is_empty() { &path } else { &shifted };
+            let one = animation("", &format!("frames = 12\n{path}")).unwrap();
+            let other = animation("", &format!("frames = 12\nfirst = {first}\n{shifted}")).unwrap();
+            assert_eq!((other.first(), other.last()), (first, first + 11));
+            for number in 1..=12 {
+                let shown = other.check(first + number - 1).unwrap();
+                assert_eq!(shown, one.check(number).unwrap());
+            }
+            let message = other.frame(first - 1).unwrap_err().to_string();
+            let frames = format!("the frames are {first} to {}", first + 11);
+            assert!(message.contains(&frames), "{message}");
+            assert_eq!(Animation::from_toml(&other.to_toml()).unwrap(), other);
+            assert!(!one.to_toml().contains("first"));
+        }
+    }
+    let still = "orbit = { radius = 30, inclination = 80, azimuth = 0 }";
+    for first in ["1000000001", "-1000000001", "9223372036854775807"] {
+        let text = format!("frames = 3\nfirst = {first}\n{still}");
+        refused("", &text, &["animation.first", first, "1000000000"]);
+    }
+    let outside = format!("frames = 12\nfirst = 1001\n{}", keyframes([1, 1004, 1012]));
+    refused(
+        "",
+        &outside,
+        &["animation.keyframe.frame = 1", "1001 to 1012"],
+    );
 }

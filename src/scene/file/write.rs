@@ -3,8 +3,8 @@
 use std::fmt;
 
 use super::{
-    AnimationTable, CameraTable, DiskTable, FromTo, ImageTable, Interpolation, OrbitTable,
-    SceneFile, line, sky,
+    AnimationTable, CameraTable, DiskTable, Fov, FromTo, ImageTable, Interpolation, OrbitTable,
+    Place, SceneFile, line, sky,
 };
 use crate::scene::checked::Scene;
 use crate::scene::values::{Light, Tone};
@@ -14,10 +14,11 @@ impl From<&Scene> for SceneFile {
         let camera = scene.camera();
         Self {
             camera: CameraTable {
-                position: Some(camera.position.to_array()),
+                place: Some(Place::Position(camera.position.to_array())),
                 focus: camera.focus.to_array(),
                 up: Some(camera.up.to_array()),
-                fov: camera.fov_degrees,
+                roll: 0.0,
+                fov: Fov::Vertical(camera.fov_degrees),
             },
             disk: scene.disk().map(|disk| DiskTable {
                 inner: disk.inner,
@@ -52,11 +53,7 @@ impl fmt::Display for SceneFile {
             sky,
             animation,
         } = self;
-        writeln!(f, "[camera]")?;
-        line(f, "position", camera.position)?;
-        writeln!(f, "focus = {:?}", camera.focus)?;
-        line(f, "up", camera.up)?;
-        writeln!(f, "fov = {:?}", camera.fov)?;
+        write!(f, "{camera}")?;
         if let Some(disk) = disk {
             write!(f, "\n{disk}")?;
         }
@@ -84,6 +81,33 @@ impl fmt::Display for SceneFile {
         animation
             .as_ref()
             .map_or(Ok(()), |animation| write!(f, "\n{animation}"))
+    }
+}
+
+impl fmt::Display for CameraTable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "[camera]")?;
+        match self.place {
+            Some(Place::Position(position)) => writeln!(f, "position = {position:?}")?,
+            Some(Place::Angles {
+                radius,
+                inclination,
+                azimuth,
+            }) => writeln!(
+                f,
+                "radius = {radius:?}\ninclination = {inclination:?}\nazimuth = {azimuth:?}"
+            )?,
+            None => {}
+        }
+        writeln!(f, "focus = {:?}", self.focus)?;
+        line(f, "up", self.up)?;
+        if self.roll != 0.0 {
+            writeln!(f, "roll = {:?}", self.roll)?;
+        }
+        match self.fov {
+            Fov::Vertical(degrees) => writeln!(f, "fov = {degrees:?}"),
+            Fov::Horizontal(degrees) => writeln!(f, "fov_horizontal = {degrees:?}"),
+        }
     }
 }
 
@@ -120,6 +144,10 @@ impl fmt::Display for AnimationTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "[animation]")?;
         writeln!(f, "frames = {}", self.frames)?;
+        // Left out at its default, as later keys of the picture are.
+        if self.first != 1 {
+            writeln!(f, "first = {}", self.first)?;
+        }
         writeln!(f, "fps = {:?}", self.fps)?;
         let interpolation = match self.interpolation {
             Interpolation::Smooth => "smooth",
@@ -163,9 +191,9 @@ mod tests {
     #[test]
     fn written_toml_reads_back_to_the_same_bits() {
         let mut file = SceneFile::parse(OLDEST).unwrap();
-        file.camera.position = Some([0.1 + 0.2, -1e-300, 123_456_789_012_345.0]);
+        file.camera.place = Some(Place::Position([0.1 + 0.2, -1e-300, 123_456_789_012_345.0]));
         file.camera.up = Some([5e-324, f64::MAX, -0.0]);
-        file.camera.fov = 1e-9;
+        file.camera.fov = Fov::Vertical(1e-9);
         file.image.exposure = -0.0;
         file.image.tone = Tone::None;
         file.image.bits = 16;

@@ -1,6 +1,7 @@
 //! Guards against a command line that writes where it should not, goes on after an error, panics, or gives other
 //! answers than the library.
 
+mod camera;
 mod render;
 mod scene;
 mod table;
@@ -11,7 +12,9 @@ use std::process::{Command, Stdio};
 
 use tempfile::tempdir;
 
-use crate::harness::{PROGRAM, REFERENCE_RAYS, darkness, listing, printed, refused, with_draft};
+use crate::harness::{
+    PROGRAM, REFERENCE_RAYS, darkness, done, listing, printed, refused, with_draft,
+};
 
 const SMALL: &str = "96x54";
 
@@ -65,10 +68,39 @@ fn help_and_version_succeed_and_a_missing_verb_is_misuse() {
     ] {
         assert!(printed(here, args).len() > 10);
     }
+    let help = printed(here, &["render", "--help"]).replace(['\n', ' '], "");
+    for words in ["a linear value and not sRGB", "gAMA 1.0"] {
+        assert!(help.contains(&words.replace(' ', "")), "{words}");
+    }
     let output = darkness(here, &[]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     let stderr = String::from_utf8(output.stderr).unwrap();
     assert!(stderr.contains("Usage:") && stderr.contains("Examples:"));
+}
+
+#[test]
+fn completions_and_manual_pages_know_every_verb() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    let verbs = ["render", "table", "trace", "scene", "chart", "job"];
+    for shell in ["bash", "zsh", "fish", "powershell"] {
+        let text = printed(here, &["completions", shell]);
+        for word in verbs.into_iter().chain(["inclination", "require-table"]) {
+            assert!(text.contains(word), "{shell}: {word}");
+        }
+    }
+    let page = printed(here, &["man"]);
+    assert!(verbs.iter().all(|verb| page.contains(verb)), "{page}");
+    assert!(printed(here, &["man", "render"]).contains("inclination"));
+    refused(here, &["man", "paint"], 2, &["paint"]);
+    done(here, &["man", "-o", "share/man1"]);
+    let pages = listing(&here.join("share/man1"));
+    for page in ["darkness.1", "darkness-render.1", "darkness-table-verify.1"] {
+        assert!(pages.iter().any(|name| name == page), "{pages:?}");
+    }
+    // The help names both, in a line.
+    let help = printed(here, &["--help"]);
+    assert!(help.contains("darkness completions bash") && help.contains("darkness man"));
 }
 
 #[test]

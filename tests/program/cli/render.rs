@@ -83,7 +83,7 @@ fn without_a_disk_no_edges_are_explained() {
         "standard: up to 1.0e-9 rad, enough\n",
         "fine: up to 1.0e-12 rad, more than enough\n",
         "\norders      none: the scene has no disk\n",
-        " of the table, 15552 of pixels\n",
+        "\nbytes       15552 of pixels\n",
         " bytes, directions right to ",
         "\ngrid        a line every ",
         "no map of the radius, since there is no disk; spin and thickness are",
@@ -96,6 +96,64 @@ fn without_a_disk_no_edges_are_explained() {
         assert!(!told.contains("edge"), "{told}");
         assert!(!told.contains("curves"), "{told}");
     }
+}
+
+/// `--explain` of an animation tells of each figure its range and the frame in which it is greatest, and of the table
+/// that all frames are drawn with.
+#[test]
+fn all_frames_that_are_asked_for_are_explained() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    // For its first frame alone the draft table would do.
+    let approach = ["render", "approach", "--size", SMALL, "--tolerance", "1e-4"];
+    let explain = |frames: &str| {
+        let options = ["--explain", "--frames", frames];
+        printed(here, &[&approach[..], &options].concat())
+    };
+    let explained = explain("1-96");
+    for words in [
+        "for the table, 5.0e-5 for the curves\n",
+        "\nframes      1-96; each figure's range",
+        "one table for all frames: of 9 of them edges move most in frame ",
+    ] {
+        assert!(explained.contains(words), "no {words:?} in:\n{explained}");
+    }
+    // The least and the greatest value of a figure, and its frame, are what single frames have.
+    let single: Vec<String> = (1..=96)
+        .map(|number| explain(&number.to_string()))
+        .collect();
+    for (label, words) in [
+        ("edges ", "at most "),
+        ("orders ", "0: at most "),
+        ("edge error ", "at most "),
+    ] {
+        let after = |text: &str| {
+            let line = text.lines().find(|line| line.starts_with(label)).unwrap();
+            line.split_once(words).unwrap().1.to_owned()
+        };
+        let range = after(&explained);
+        let (least, rest) = range.split_once(" to ").unwrap();
+        let (most, rest) = rest.split_once(" (frame ").unwrap();
+        let frame: usize = rest.split_once(')').unwrap().0.parse().unwrap();
+        let value = |text: &str| -> f64 { after(text).split(' ').next().unwrap().parse().unwrap() };
+        let [least, most] = [least, most].map(|figure| figure.parse::<f64>().unwrap());
+        let values: Vec<f64> = single.iter().map(|text| value(text)).collect();
+        assert_eq!(
+            values.iter().copied().fold(f64::INFINITY, f64::min),
+            least,
+            "{label}"
+        );
+        assert_eq!(values.iter().copied().fold(0.0, f64::max), most, "{label}");
+        assert_eq!(values[frame - 1], most, "{label}");
+    }
+    let one = explain("1");
+    assert!(
+        one.contains("\ntable       standard (tables/standard.table)"),
+        "{one}"
+    );
+    let options = ["--frames", "1", "-o", "f_#.png"];
+    let (_, stderr) = done(here, &[&approach[..], &options].concat());
+    assert!(stderr.contains("table standard ("), "{stderr}");
 }
 
 /// The picture decides the table: the draft table for a small picture, none if even the fine table is too coarse.
@@ -118,6 +176,7 @@ fn a_picture_takes_the_smallest_table_that_is_good_enough() {
         let explained = printed(here, &explain);
         for words in [
             "96 × 54, edges to be right to ",
+            " for the table, ",
             &format!("{name} (tables/{name}.table), error "),
             "orders      0: ",
             "and up are left out",
@@ -162,9 +221,10 @@ fn a_picture_takes_the_smallest_table_that_is_good_enough() {
 fn tolerances_that_make_no_sense_are_refused_as_misuse() {
     let folder = tempdir().unwrap();
     for (args, words) in [
-        (&["--tolerance", "0"][..], "image.tolerance = 0.0"),
-        (&["--tolerance", "-1"], "image.tolerance = -1.0"),
-        (&["--tolerance", "nan"], "image.tolerance = NaN"),
+        (&["--tolerance", "0"][..], "--tolerance 0: an edge's"),
+        (&["--tolerance", "-1"], "--tolerance -1: an edge's"),
+        (&["--tolerance", "nan"], "--tolerance NaN: an edge's"),
+        (&["--size", "0x9"], "--size 0x9: a picture's side"),
         (&["--tolerance", "2"], "at most 1 pixel"),
         (
             &["--tolerance", "0.1", "--method", "exact"],
@@ -240,7 +300,6 @@ fn render_checks_where_the_picture_goes_before_any_work() {
         ("x.jpg", 2, &["x.jpg", ".png"][..]),
         ("x", 2, &[".png"]),
         ("folder.png", 1, &["folder.png is a folder"]),
-        ("no/x.png", 1, &["no/x.png", "the folder no does not exist"]),
         ("file/x.png", 1, &["file/x.png", "file is not a folder"]),
     ] {
         refused(here, &["render", "-o", output], code, words);
@@ -254,6 +313,22 @@ fn render_checks_where_the_picture_goes_before_any_work() {
         &["/proc/x.png", "cannot be written"],
     );
     assert_eq!(listing(here), before, "something was written");
+}
+
+#[test]
+fn missing_folders_of_an_output_are_made() {
+    let folder = with_draft();
+    let here = folder.path();
+    let small = ["render", "--table", "a.table", "--size", SMALL, "-o"];
+    done(here, &[&small[..], &["stills/of/x.png"]].concat());
+    done(here, &[&small[..], &["films/x.y4m"]].concat());
+    assert_eq!(listing(&here.join("stills/of")), ["x.png"]);
+    assert_eq!(listing(&here.join("films")), ["x.y4m"]);
+    // None is made for a picture that is not drawn.
+    refused(here, &[&small[..], &["no/x.jpg"]].concat(), 2, &[".png"]);
+    let one_file = ["chart", "--quick", "-o", "no/a.svg", "--csv", "./no/a.svg"];
+    refused(here, &one_file, 2, &["name the same file"]);
+    assert_eq!(listing(here), ["a.table", "films", "stills"]);
 }
 
 #[test]

@@ -13,18 +13,52 @@ use crate::harness::{
 };
 
 #[test]
-fn only_the_default_table_is_made_without_being_asked_for() {
+fn a_table_that_is_named_is_made_where_it_is_missing_unless_it_is_required() {
     let folder = tempdir().unwrap();
     let here = folder.path();
     let render = ["render", "--size", SMALL];
-    let words = ["other.table", "darkness table standard"];
-    let flag = [&render[..], &["--table", "other.table"]].concat();
-    refused(here, &flag, 1, &words);
-    let mut variable = darkness(here, &render);
-    variable.env("DARKNESS_TABLE", "other.table");
-    let words = [words[0], words[1], "DARKNESS_TABLE"];
-    fails(&variable.output().unwrap(), 1, &words);
-    assert!(listing(here).is_empty());
+    let named = |by_flag: bool, file: &str, options: &[&str]| {
+        let options = [&render[..], options].concat();
+        if by_flag {
+            return darkness(here, &[&options[..], &["--table", file]].concat());
+        }
+        let mut command = darkness(here, &options);
+        command.env("DARKNESS_TABLE", file);
+        command
+    };
+    for (by_flag, folder) in [(true, "flag"), (false, "variable")] {
+        for (name, made) in [("draft", "draft"), ("fine", "fine"), ("mine", "standard")] {
+            let file = format!("{folder}/{name}.table");
+            let words = [&*file, "make it with `darkness table"];
+            let required = named(by_flag, &file, &["--require-table"])
+                .output()
+                .unwrap();
+            fails(&required, 1, &words);
+            assert_eq!(
+                String::from_utf8(required.stderr)
+                    .unwrap()
+                    .contains("DARKNESS_TABLE"),
+                !by_flag
+            );
+            assert!(!here.join(&file).exists());
+            let (_, stderr) = finish(&mut named(by_flag, &file, &[]));
+            let told = format!("{file} is not there yet: making the {made} table, once");
+            assert!(
+                stderr.contains(&told) && stderr.contains(&format!("table {made} (")),
+                "{stderr}"
+            );
+            let (_, stderr) = finish(&mut named(by_flag, &file, &[]));
+            assert!(!stderr.contains("making"), "{stderr}");
+            assert!(printed(here, &["table", "inspect", &file]).contains(made));
+        }
+        // What no table is good enough for takes the best.
+        let file = format!("{folder}/best.table");
+        let (_, stderr) = finish(&mut named(by_flag, &file, &["--tolerance", "1e-10"]));
+        assert!(stderr.contains("making the fine table"), "{stderr}");
+    }
+    fs::remove_dir_all(here.join("flag")).unwrap();
+    fs::remove_dir_all(here.join("variable")).unwrap();
+    fs::remove_file(here.join("classic.png")).unwrap();
 
     // The flag has priority over the environment, and an empty variable counts as unset.
     done(here, &["table", "draft", "-o", "d.table"]);
@@ -40,6 +74,35 @@ fn only_the_default_table_is_made_without_being_asked_for() {
         assert!(stderr.contains(words), "{stderr}");
     }
     assert_eq!(listing(here), ["classic.png", "d.table", "tables"]);
+}
+
+/// Guards against a table beside every picture that a person makes, and one made again in every folder.
+#[test]
+#[cfg(target_os = "linux")]
+fn without_a_folder_of_tables_they_go_to_the_users_cache() {
+    let (folder, home) = (tempdir().unwrap(), tempdir().unwrap());
+    let here = folder.path();
+    let cache = home.path().join(".cache/darkness");
+    let render = || {
+        let mut command = darkness(here, &["render", "--size", SMALL]);
+        command.env("DARKNESS_CACHE", "").env("HOME", home.path());
+        finish(command.env_remove("XDG_CACHE_HOME")).1
+    };
+    let told = format!("{} is not there yet", cache.join("draft.table").display());
+    assert!(render().contains(&told));
+    assert!(!render().contains("draft.table is not there"));
+    assert_eq!(listing(here), ["classic.png"]);
+    assert_eq!(listing(&cache), ["draft.table"]);
+
+    let mut command = darkness(here, &["table", "draft"]);
+    command.env("DARKNESS_CACHE", "own");
+    finish(&mut command);
+    assert_eq!(listing(&here.join("own")), ["draft.table"]);
+
+    // A clone has the folder, and keeps its tables there.
+    fs::create_dir(here.join("tables")).unwrap();
+    assert!(render().starts_with("tables/draft.table is not there yet"));
+    assert_eq!(listing(&here.join("tables")), ["draft.table"]);
 }
 
 #[test]
@@ -162,7 +225,9 @@ fn inspect_and_verify_describe_a_table() {
         verified.contains(&format!("all {size} bytes")),
         "{verified}"
     );
-    refused(here, &["table", "verify", "no.table"], 1, &["no.table"]);
+    for verb in ["inspect", "verify"] {
+        refused(here, &["table", verb, "no.table"], 2, &["no.table"]);
+    }
 }
 
 #[test]

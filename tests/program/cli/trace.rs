@@ -161,7 +161,14 @@ fn trace_names_a_bad_row_and_goes_on_with_the_others() {
     let headless = fed(here, &args, "0.1,0.2\n");
     fails(&headless, 1, &["standard input, line 1", "u0"]);
     fails(&fed(here, &args, ""), 1, &["standard input", "header"]);
-    refused(here, &["trace", "no.csv"], 1, &["no.csv"]);
+    refused(here, &["trace", "no.csv"], 2, &["no.csv"]);
+    let none = fed(here, &args, "u0,dudphi\na,b\n2,1\n");
+    assert_eq!(none.status.code(), Some(1));
+    let stderr = String::from_utf8(none.stderr).unwrap();
+    assert!(
+        stderr.ends_with("none of 2 rows holds a ray that can be followed\n"),
+        "{stderr}"
+    );
     assert_eq!(
         listing(here),
         ["a.table", "rays.csv"],

@@ -85,7 +85,7 @@ fn a_panorama_is_decoded_only_to_be_drawn() {
         &["-o", "a.y4m"],
         &["--explain"],
     ] {
-        refused(here, &[&render[..], options].concat(), 1, &words);
+        refused(here, &[&render[..], options].concat(), 2, &words);
     }
 }
 
@@ -196,10 +196,17 @@ fn a_file_of_the_sky_is_not_overwritten() {
     // A frame's name that is a link to the panorama.
     fs::create_dir(here.join("out")).unwrap();
     std::os::unix::fs::symlink("../sky.png", here.join("out/f_0003.png")).unwrap();
-    let (output, stderr) = run(here, &["render", "moving.toml", "-o", PATTERN]);
+    let render = ["render", "moving.toml", "-o", PATTERN];
+    refused(
+        here,
+        &render,
+        1,
+        &["out/f_0003.png: made by another program"],
+    );
+    let (output, stderr) = run(here, &[&render[..], &["--overwrite"]].concat());
     assert_eq!(output.status.code(), Some(1));
     assert!(
-        stderr.contains("3: out/f_####.png") && stderr.contains("a link to"),
+        stderr.contains("3: out/f_0003.png") && stderr.contains("a link to"),
         "{stderr}"
     );
     assert!(fs::read(here.join("sky.png")).unwrap() == before["sky.png"]);

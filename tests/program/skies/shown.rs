@@ -200,7 +200,7 @@ fn the_sky_is_explained_and_timed() {
     );
     assert!(told.contains("no escape curve"));
     let (_, timings) = done(here, &["render", "still.toml", "--timings"]);
-    assert!(timings.contains("  reading the sky\n"), "{timings}");
+    assert!(timings.contains("    reading the sky\n"), "{timings}");
     let lit = ["render", "lit", "--size", "96x54", "--timings"];
     assert!(!done(here, &lit).1.contains("sky"));
 }
