@@ -130,7 +130,7 @@ fn a_pixel_is_the_mean_of_many_rays() {
 #[test]
 fn a_film_has_the_sky_that_is_in_memory() {
     let source = Arc::new(SkySource::new(Some(noise(16)), None, None));
-    let film = "[camera]\nposition = [20, 0, 4]\nfov = 40\n[sky]\npanorama = \"of the test\"\n\
+    let film = "[camera]\nfov = 40\n[sky]\npanorama = \"of the test\"\n\
                 [image]\nwidth = 32\nheight = 18\n[animation]\nframes = 2\n\
                 orbit = { radius = 20, inclination = 80, azimuth = [0, 90] }\n";
     let film = Animation::from_toml(film).unwrap();
