@@ -43,6 +43,7 @@ mod renderer;
 mod sky_directions;
 mod sky_extremes;
 mod sky_footprints;
+mod sky_grid;
 mod sky_panorama;
 mod sky_stars;
 mod sky_views;
