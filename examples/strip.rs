@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// Renders the frames, from left to right.
-pub fn strip() -> Result<RgbImage, Box<dyn Error>> {
+pub(crate) fn strip() -> Result<RgbImage, Box<dyn Error>> {
     let table = Table::generate(&Spec::standard())?;
     let plunge = Animation::load("plunge")?.with_size(WIDTH, HEIGHT)?;
     let mut renderer = Renderer::new(&table);
