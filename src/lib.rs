@@ -92,3 +92,7 @@ pub use orbit::Ray;
 pub use render::Renderer;
 pub use scene::Scene;
 pub use table::Table;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}

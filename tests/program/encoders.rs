@@ -163,32 +163,34 @@ fn encoders_take_a_film_and_their_streams_say_the_range() {
 }
 
 #[test]
-fn the_command_in_the_readme_makes_a_film_with_the_right_range_and_colours() {
+fn the_commands_of_the_pages_make_films_with_the_right_range_and_colours() {
     if !["ffmpeg", "ffprobe"].iter().all(|tool| tools::has(tool)) {
         return;
     }
     let folder = tempdir().unwrap();
     let here = folder.path();
-    let readme = include_str!("../../README.md");
-    let line = readme
-        .lines()
-        .find(|line| line.contains("-o orbit.mp4"))
-        .unwrap();
-    let small = line.replace("render orbit", "render orbit --size 320x180 --frames 1-24");
-    assert_ne!(small, line);
-    tool_prints(here, &["sh", "-c", &small]);
-    let entries = [
-        "width=320",
-        "height=180",
-        "pix_fmt=yuv420p",
-        "color_range=tv",
-        "color_space=bt709",
-        "color_transfer=bt709",
-        "color_primaries=bt709",
-        "r_frame_rate=24/1",
-        "nb_frames=24",
-    ];
-    assert_says(&probed(here, "orbit.mp4"), &entries);
+    for (page, film) in [
+        (include_str!("../../README.md"), "film.mp4"),
+        (include_str!("../../docs/animations.md"), "orbit.mp4"),
+    ] {
+        let output = format!(" -o {film}");
+        let line = page.lines().find(|line| line.contains(&output)).unwrap();
+        let small = line.replace(" render ", " render --size 320x180 --frames 1-24 ");
+        assert_ne!(small, line);
+        tool_prints(here, &["sh", "-c", &small]);
+        let entries = [
+            "width=320",
+            "height=180",
+            "pix_fmt=yuv420p",
+            "color_range=tv",
+            "color_space=bt709",
+            "color_transfer=bt709",
+            "color_primaries=bt709",
+            "r_frame_rate=24/1",
+            "nb_frames=24",
+        ];
+        assert_says(&probed(here, film), &entries);
+    }
     // Converted back to grey from 0 to 255, it equals the frame up to the film's compression.
     let options = "-i orbit.mp4 -vf scale=out_range=pc,format=gray -frames:v 1 -f rawvideo -";
     let film = ffmpeg(here, &options.split(' ').collect::<Vec<_>>());

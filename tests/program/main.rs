@@ -20,6 +20,7 @@ mod farm;
 mod formats;
 mod long_runs;
 mod outputs;
+mod pages;
 mod readers;
 mod skies;
 mod sky_faults;
