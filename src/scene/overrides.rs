@@ -58,8 +58,8 @@ impl Override {
         })
     }
 
-    /// The value of a key, from what `source` names.
-    pub(crate) fn new(source: String, key: &str, value: impl Into<Value>) -> Self {
+    /// Returns the override of a key by a value. Errors begin with its `source`, such as the name of an option.
+    pub fn new(source: String, key: &str, value: impl Into<Value>) -> Self {
         Self {
             source,
             key: key.to_owned(),

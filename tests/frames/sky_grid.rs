@@ -35,21 +35,15 @@ fn red(turned: f64, fov: f64, size: (u32, u32)) -> Vec<f64> {
 fn edges_are_straight_however_magnified() {
     // From the middle of a meridian to beside it; where its edge is, to a thousandth of a pixel.
     let is_line = |turned: f64| red(turned, 1e-4, (1, 1))[0] > 0.1;
-    let first = (0..4000).map(|i| f64::from(i) * 1e-3);
-    let mut on = first
-        .clone()
-        .find(|&turned| is_line(turned))
-        .expect("a line");
-    let mut off = (1..)
-        .map(|i| on + 1e-3 * f64::from(i))
-        .find(|&turned| !is_line(turned))
-        .unwrap();
+    let mut turned = (0..8000).map(|i| f64::from(i) * 1e-3);
+    let mut on = turned.find(|&turned| is_line(turned)).expect("a line");
+    let mut off = turned.find(|&turned| !is_line(turned)).expect("its edge");
     while off - on > 1e-12 {
         let middle = 0.5 * (on + off);
         if is_line(middle) {
-            on = middle
+            on = middle;
         } else {
-            off = middle
+            off = middle;
         }
     }
     for fov in [0.02, 0.002, 0.0005] {

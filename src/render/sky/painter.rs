@@ -198,7 +198,7 @@ impl SkyTiles<'_, '_, '_> {
         let left = first as f64;
         let origin = [patch.middle(0), patch.middle(1)];
         let (mut above, mut centres, mut below) = (NO_PLACES, NO_PLACES, NO_PLACES);
-        let middle = (self.top + (bounds.rows.0 + bounds.rows.1) / 2) as f64;
+        let middle = (self.top + bounds.rows.0.midpoint(bounds.rows.1)) as f64;
         fill_places(patch, origin, (left, middle), &mut above, columns + 1);
         fill_places(patch, origin, (left, middle + 1.0), &mut below, columns + 1);
         let pixels = PixelRow {

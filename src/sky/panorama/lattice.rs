@@ -79,7 +79,7 @@ impl<'a> Lattice<'a> {
         let mut blocks = [Block::default(); BLOCKS];
         for (i, block) in blocks[..columns.div_ceil(BLOCK)].iter_mut().enumerate() {
             let (from, to) = (BLOCK * i, columns.min(BLOCK * (i + 1)));
-            let [a, b] = middle.sides((from + to) / 2, panorama.size);
+            let [a, b] = middle.sides(from.midpoint(to), panorama.size);
             *block = Block::of(a, b, panorama.levels());
         }
         Self {
