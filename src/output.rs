@@ -2,7 +2,9 @@
 //!
 //! A file is written under a hidden name that ends in `.part`, in the same folder, and renamed when it is finished. It
 //! is locked (`flock`) while it is written: the lock tells a file that a process is writing, on any machine that shares
-//! the disk, from one that a killed process left.
+//! the disk, from one that a killed process left. Processes that share some work [claim](claim) files by that lock.
+
+pub mod claim;
 
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, TryLockError};
@@ -75,23 +77,9 @@ impl Unfinished {
     /// What creating a file in the same folder returns; a file that may not be written is there.
     pub fn new(path: &Path) -> io::Result<Self> {
         let path = led_to(path)?;
-        let replaced = fs::metadata(&path).ok().filter(fs::Metadata::is_file);
-        if replaced.is_some() {
-            check_writable(&path)?;
-        }
-        let mut prefix = OsString::from(".");
-        prefix.push(path.file_name().map(label).unwrap_or_default());
-        prefix.push(".");
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(&prefix).suffix(ENDING).rand_bytes(RANDOM);
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // The kernel applies the umask.
-            builder.permissions(fs::Permissions::from_mode(0o666));
-        }
+        let mode = replaced_mode(&path)?;
         loop {
-            let temporary = builder.tempfile_in(folder_of(&path)).map_err(bare)?;
+            let temporary = create(&path, None)?;
             // Before the lock another process may have taken the file for a leftover. Where files cannot be locked,
             // none does.
             let is_taken = matches!(
@@ -99,13 +87,17 @@ impl Unfinished {
                 Err(TryLockError::WouldBlock)
             ) || !temporary.path().exists();
             if !is_taken {
-                if let Some(replaced) = replaced {
-                    // Disks without modes refuse, and have none to keep.
-                    let _ = temporary.as_file().set_permissions(replaced.permissions());
-                }
-                return Ok(Self { temporary, path });
+                return Ok(Self::with_mode(temporary, path, mode));
             }
         }
+    }
+
+    fn with_mode(temporary: NamedTempFile, path: PathBuf, mode: Option<fs::Permissions>) -> Self {
+        if let Some(mode) = mode {
+            // Disks without modes refuse, and have none to keep.
+            let _ = temporary.as_file().set_permissions(mode);
+        }
+        Self { temporary, path }
     }
 
     /// The file to write to.
@@ -139,7 +131,7 @@ fn remove_leftovers(folder: &Path, asked: impl Fn(&[u8]) -> bool) {
     };
     for entry in entries.flatten() {
         if leftover(&entry.file_name()).is_some_and(&asked) {
-            remove_if_dead(&entry.path());
+            let _ = remove_if_dead(&entry.path());
         }
     }
 }
@@ -154,17 +146,95 @@ pub fn leftover(name: &OsStr) -> Option<&[u8]> {
     (is_ours && !label.is_empty()).then_some(label)
 }
 
-/// Removes an unfinished file, unless a process is writing it.
-pub fn remove_if_dead(path: &Path) {
-    // Opening a pipe would wait for its writer.
-    let is_file = fs::symlink_metadata(path).is_ok_and(|kind| kind.is_file());
-    // The file is deleted before it is unlocked: a writer that finds it locked chooses another name.
-    if is_file
-        && let Ok(file) = File::open(path)
-        && file.try_lock().is_ok()
-    {
-        let _ = fs::remove_file(path);
+/// Removes an unfinished file, unless a process is writing it. Returns whether it is gone.
+///
+/// # Errors
+/// It is no regular file, or cannot be locked or removed.
+pub fn remove_if_dead(path: &Path) -> io::Result<bool> {
+    let remove = || {
+        // Opening a pipe would wait for its writer.
+        if !fs::symlink_metadata(path)?.is_file() {
+            return Err(io::Error::other("not a regular file"));
+        }
+        let file = open_to_lock(path)?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Ok(false),
+            Err(TryLockError::Error(error)) => return Err(error),
+        }
+        // Before the lock the name may have become another file's. The file is deleted before it is unlocked: a writer
+        // that finds it locked chooses another name, or looks again.
+        if is_at(&file, path) {
+            fs::remove_file(path)?;
+        }
+        Ok(true)
+    };
+    match remove() {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(true),
+        gone => gone,
     }
+}
+
+/// Opens a file for a lock. On network file systems an exclusive lock needs the right to write; elsewhere another
+/// user's file can be locked too.
+fn open_to_lock(path: &Path) -> io::Result<File> {
+    let file = File::options().read(true).write(true).open(path);
+    file.or_else(|_| File::open(path))
+}
+
+/// Whether an open file has this name.
+fn is_at(file: &File, path: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        let place = |kind: fs::Metadata| (kind.dev(), kind.ino());
+        let (file, named) = (file.metadata(), fs::symlink_metadata(path));
+        file.is_ok_and(|file| named.is_ok_and(|named| place(file) == place(named)))
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = file;
+        path.exists()
+    }
+}
+
+/// Creates an unfinished file for `path`, with `part` or random letters and digits before the ending.
+///
+/// # Errors
+/// What the system returns.
+fn create(path: &Path, part: Option<&str>) -> io::Result<NamedTempFile> {
+    let mut prefix = prefix(path);
+    prefix.push(part.unwrap_or_default());
+    let random = if part.is_some() { 0 } else { RANDOM };
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&prefix).suffix(ENDING).rand_bytes(random);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // The kernel applies the umask.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder_of(path)).map_err(bare)
+}
+
+/// How the names of unfinished files for `path` begin.
+fn prefix(path: &Path) -> OsString {
+    let mut prefix = OsString::from(".");
+    prefix.push(path.file_name().map(label).unwrap_or_default());
+    prefix.push(".");
+    prefix
+}
+
+/// The mode of the file at `path`, if one is there.
+///
+/// # Errors
+/// It may not be written.
+fn replaced_mode(path: &Path) -> io::Result<Option<fs::Permissions>> {
+    let replaced = fs::metadata(path).ok().filter(fs::Metadata::is_file);
+    if replaced.is_some() {
+        check_writable(path)?;
+    }
+    Ok(replaced.map(|replaced| replaced.permissions()))
 }
 
 /// The label in an unfinished file's name: the final name, or for a long one its checksum.

@@ -21,6 +21,7 @@ mod formats;
 mod long_runs;
 mod outputs;
 mod readers;
+mod sharing;
 mod skies;
 mod sky_faults;
 mod table_faults;

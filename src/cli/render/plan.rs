@@ -3,6 +3,7 @@
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use super::super::destination::Destination;
 use super::super::frame_range::FrameRange;
@@ -139,14 +140,22 @@ impl<'a> Plan<'a> {
 
     /// Whether a frame of a sequence is there already, and is to be kept.
     pub(super) fn is_finished(&self, number: i64, origin: &FrameOrigin) -> bool {
-        match &self.destination {
-            Destination::Sequence(pattern) if !self.args.overwrite => {
-                let origin = origin.of_frame(number);
-                let file = pattern.file(number);
-                sequence::is_finished(&file, self.most_bytes(), |file| self.made(file, &origin))
-            }
-            _ => false,
-        }
+        !self.args.overwrite && self.finished_at(number, origin, None).is_some()
+    }
+
+    /// Returns when a frame of a sequence was finished, if it is there and was written after `after`.
+    pub(super) fn finished_at(
+        &self,
+        number: i64,
+        origin: &FrameOrigin,
+        after: Option<SystemTime>,
+    ) -> Option<SystemTime> {
+        let Destination::Sequence(pattern) = &self.destination else {
+            return None;
+        };
+        let (file, origin) = (pattern.file(number), origin.of_frame(number));
+        let made = |file: &[u8]| self.made(file, &origin);
+        sequence::finished_at(&file, self.most_bytes(), after, made)
     }
 
     /// What the frames are made of, apart from their number.
@@ -219,7 +228,7 @@ impl<'a> Plan<'a> {
     }
 
     /// The bits of a PNG picture's samples: one where a mask's edges are hard and no number is asked for.
-    fn depth(&self) -> u8 {
+    pub(super) fn depth(&self) -> u8 {
         let is_hard = !self.first.antialias() || !self.args.method.is_table();
         match self.form {
             Form::Grey8 if is_hard && self.args.bits.is_none() => 1,

@@ -20,6 +20,8 @@ pub(super) struct Counts {
     pub(super) drawn: u64,
     /// Frames that were there already.
     pub(super) finished_before: u64,
+    /// Frames that other runs drew since this one began.
+    pub(super) by_others: u64,
     /// Frames whose curves were not accurate enough.
     pub(super) ray_by_ray: u64,
     /// The frame with the largest error of an edge, the first of equals.
@@ -64,6 +66,11 @@ impl RunStats {
     /// Counts a frame that was there already.
     pub(super) fn finished_before(&self) {
         self.counts().finished_before += 1;
+    }
+
+    /// Counts a frame that another run drew since this one began.
+    pub(super) fn by_another(&self) {
+        self.counts().by_others += 1;
     }
 
     /// Counts a frame that could not be drawn or written.
