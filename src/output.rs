@@ -125,7 +125,7 @@ impl Unfinished {
 }
 
 /// Removes the unfinished files in a folder whose [`label`] is `asked`, unless a process is writing them.
-fn remove_leftovers(folder: &Path, asked: impl Fn(&[u8]) -> bool) {
+pub fn remove_leftovers(folder: &Path, asked: impl Fn(&[u8]) -> bool) {
     let Ok(entries) = fs::read_dir(folder) else {
         return;
     };

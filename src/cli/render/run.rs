@@ -271,6 +271,9 @@ impl Run<'_> {
             }
             let Ok(()) = self.draw(left.iter().copied(), left.len() as u64, wanted, done);
         }
+        if self.stats.counts().by_others > 0 {
+            sequence::clean(pattern, self.plan.frames);
+        }
         Ok(())
     }
 

@@ -14,7 +14,7 @@ use super::super::method::hex;
 use super::super::pattern::Pattern;
 use super::origin::{FrameOrigin, HEAD};
 use crate::output::claim::RunMark;
-use crate::output::{Unfinished, leftover, remove_if_dead};
+use crate::output::{Unfinished, leftover, remove_if_dead, remove_leftovers};
 
 /// Returns when a frame's file was written, if it exists, was written after `after`, and is what is to be `made`. A file
 /// of more than `most` bytes is not.
@@ -134,6 +134,14 @@ pub(super) fn survey(
     survey.foreign.sort_unstable();
     survey.left_over.sort_unstable();
     survey
+}
+
+/// Removes what runs that were killed meanwhile left of frames that were there already.
+pub(super) fn clean(pattern: &Pattern, asked: &FrameRange) {
+    remove_leftovers(folder(pattern), |name| {
+        let number = pattern.number(name);
+        number.is_some_and(|number| asked.contains(number))
+    });
 }
 
 /// The folder of a sequence.
