@@ -3,7 +3,6 @@
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
 
 use super::super::destination::Destination;
 use super::super::frame_range::FrameRange;
@@ -140,22 +139,16 @@ impl<'a> Plan<'a> {
 
     /// Whether a frame of a sequence is there already, and is to be kept.
     pub(super) fn is_finished(&self, number: i64, origin: &FrameOrigin) -> bool {
-        !self.args.overwrite && self.finished_at(number, origin, None).is_some()
+        !self.args.overwrite && self.is_there(number, origin)
     }
 
-    /// Returns when a frame of a sequence was finished, if it is there and was written after `after`.
-    pub(super) fn finished_at(
-        &self,
-        number: i64,
-        origin: &FrameOrigin,
-        after: Option<SystemTime>,
-    ) -> Option<SystemTime> {
+    /// Whether a frame of a sequence is there already, whole and of this origin.
+    pub(super) fn is_there(&self, number: i64, origin: &FrameOrigin) -> bool {
         let Destination::Sequence(pattern) = &self.destination else {
-            return None;
+            return false;
         };
         let (file, origin) = (pattern.file(number), origin.of_frame(number));
-        let made = |file: &[u8]| self.made(file, &origin);
-        sequence::finished_at(&file, self.most_bytes(), after, made)
+        sequence::is_finished(&file, self.most_bytes(), |file| self.made(file, &origin))
     }
 
     /// What the frames are made of, apart from their number.

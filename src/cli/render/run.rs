@@ -1,11 +1,12 @@
 //! The run: frames are drawn, written and counted.
 
+use std::collections::HashMap;
 use std::convert::Infallible;
 use std::io::{self, Write};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, Instant};
 
 use bytesize::ByteSize;
 
@@ -114,14 +115,24 @@ fn read_sky(
     Ok(Some(Arc::new(source)))
 }
 
+/// What was there of a sequence when a run began.
+struct Before {
+    /// How many frames had a file that may be kept.
+    present: u64,
+    /// The [numbers](sequence::inode) of the files that are to be overwritten.
+    inodes: HashMap<i64, u64>,
+    /// Refuses runs with other settings until it is dropped.
+    _mark: Option<RunMark>,
+}
+
 /// Makes the folder of a sequence, and checks that there is room for its files, and that no run with other settings is
-/// drawing them. Such runs are refused until the result is dropped.
+/// drawing them.
 fn prepare(
     plan: &Plan<'_>,
     pattern: &Pattern,
     frames: &FrameSource<'_>,
     origin: &FrameOrigin,
-) -> anyhow::Result<Option<RunMark>> {
+) -> anyhow::Result<Before> {
     let folder = pattern.folder();
     make_folder(folder).map_err(|error| {
         anyhow::anyhow!(
@@ -160,7 +171,16 @@ fn prepare(
         let bytes = missing.saturating_mul(sample(plan, frames, origin)?);
         writable::check_space(&pattern.file(1), bytes)?;
     }
-    Ok(mark)
+    let mut inodes = HashMap::new();
+    if plan.args.overwrite {
+        let inode = |number| Some((number, sequence::inode(&pattern.file(number))?));
+        inodes.extend(plan.frames.iter().filter_map(inode));
+    }
+    Ok(Before {
+        present: if plan.args.overwrite { 0 } else { present },
+        inodes,
+        _mark: mark,
+    })
 }
 
 /// The size of the largest file of the first, the middle and the last frame.
@@ -223,18 +243,17 @@ impl Run<'_> {
     /// # Errors
     /// The folder cannot be made or has no room, or another run draws these frames with other settings.
     fn sequence(&self, pattern: &Pattern) -> anyhow::Result<()> {
-        let _mark = prepare(self.plan, pattern, self.frames, &self.origin)?;
-        let began = sequence::time_at(pattern);
+        let before = prepare(self.plan, pattern, self.frames, &self.origin)?;
         let claims = Claims::default();
         // The reason without the frame's own file name: equal reasons of many frames are reported together.
         let unwritable = |error: io::Error| anyhow::anyhow!("cannot be written: {error}");
         let wanted = |number| {
-            if self.is_finished(number, began) {
+            if self.is_finished(number, &before) {
                 return false;
             }
             match sequence::claim(&pattern.file(number), &self.plan.inputs) {
                 // Another run may have finished the frame before the claim.
-                Ok(Some(_)) if self.is_finished(number, began) => return false,
+                Ok(Some(_)) if self.is_finished(number, &before) => return false,
                 Ok(Some(file)) => {
                     claims.keep(number, file);
                     return true;
@@ -271,26 +290,25 @@ impl Run<'_> {
             }
             let Ok(()) = self.draw(left.iter().copied(), left.len() as u64, wanted, done);
         }
+        self.stats.attribute(before.present);
         if self.stats.counts().by_others > 0 {
             sequence::clean(pattern, self.plan.frames);
         }
         Ok(())
     }
 
-    /// Whether a frame is there already, and counts it if so. With `--overwrite` only what another run of the same
-    /// command has drawn since this one `began` counts.
-    fn is_finished(&self, number: i64, began: SystemTime) -> bool {
-        let after = self.plan.args.overwrite.then_some(began);
-        let Some(at) = self.plan.finished_at(number, &self.origin, after) else {
-            return false;
-        };
-        if at > began {
-            self.stats.by_another();
-        } else {
+    /// Whether a frame is there already, and counts it if so. With `--overwrite` the files that were there `before` do
+    /// not count, but those that other runs of the same command put in their place.
+    fn is_finished(&self, number: i64, before: &Before) -> bool {
+        let file = self.plan.destination.file(number);
+        let old = before.inodes.get(&number);
+        let is_old = old.is_some_and(|&old| sequence::inode(&file) == Some(old));
+        let is_finished = !is_old && self.plan.is_there(number, &self.origin);
+        if is_finished {
             self.stats.finished_before();
+            self.progress.skipped();
         }
-        self.progress.skipped();
-        true
+        is_finished
     }
 
     fn encode_and_write(

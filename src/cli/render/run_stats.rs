@@ -68,9 +68,12 @@ impl RunStats {
         self.counts().finished_before += 1;
     }
 
-    /// Counts a frame that another run drew since this one began.
-    pub(super) fn by_another(&self) {
-        self.counts().by_others += 1;
+    /// Attributes to other runs the frames that were there when this one came to them, beyond the `present` ones of its
+    /// beginning.
+    pub(super) fn attribute(&self, present: u64) {
+        let mut counts = self.counts();
+        counts.by_others = counts.finished_before.saturating_sub(present);
+        counts.finished_before -= counts.by_others;
     }
 
     /// Counts a frame that could not be drawn or written.

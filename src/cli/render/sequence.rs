@@ -1,13 +1,13 @@
 //! Frames as files, one each.
 //!
-//! Runs of one command share the frames of a sequence without a scheduler: a run [claims](claim) a frame before it draws
-//! it, by the lock on the frame's unfinished file, and looks again later at frames that others have claimed. Runs with
-//! other settings would replace each other's frames: each run leaves a [mark](join) beside the frames while it lasts.
+//! Runs of one command share the frames of a sequence without a scheduler. A run [claims](claim) a frame before it
+//! draws it, by the lock on the frame's unfinished file, and looks again later at frames that others have claimed. Runs
+//! with other settings would replace each other's frames: each run leaves a [mark](join) beside the frames while it
+//! lasts, and is refused where it finds another's.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-use std::time::{SystemTime, UNIX_EPOCH};
 
 use super::super::frame_range::FrameRange;
 use super::super::method::hex;
@@ -16,26 +16,27 @@ use super::origin::{FrameOrigin, HEAD};
 use crate::output::claim::RunMark;
 use crate::output::{Unfinished, leftover, remove_if_dead, remove_leftovers};
 
-/// Returns when a frame's file was written, if it exists, was written after `after`, and is what is to be `made`. A file
-/// of more than `most` bytes is not.
-pub(super) fn finished_at(
-    path: &Path,
-    most: u64,
-    after: Option<SystemTime>,
-    made: impl Fn(&[u8]) -> bool,
-) -> Option<SystemTime> {
+/// Whether a frame's file exists, and is what is to be `made`. A file of more than `most` bytes is not.
+pub(super) fn is_finished(path: &Path, most: u64, made: impl Fn(&[u8]) -> bool) -> bool {
     // Opening a pipe would wait for its writer.
-    let kind = fs::metadata(path).ok()?;
-    let at = kind.modified().unwrap_or(UNIX_EPOCH);
-    let may_be = kind.is_file() && kind.len() <= most && after.is_none_or(|after| at > after);
-    (may_be && made(&fs::read(path).ok()?)).then_some(at)
+    let may_be = fs::metadata(path).is_ok_and(|kind| kind.is_file() && kind.len() <= most);
+    may_be && fs::read(path).is_ok_and(|file| made(&file))
 }
 
-/// The time by the clock of the disk that holds a sequence: that of files written now.
-pub(super) fn time_at(pattern: &Pattern) -> SystemTime {
-    let file = tempfile::tempfile_in(folder(pattern)).and_then(|file| file.metadata());
-    let time = file.and_then(|file| file.modified());
-    time.unwrap_or_else(|_| SystemTime::now())
+/// The number of the file at `path` on its disk, if one is there: a file that replaces it has another. It is always 0
+/// where the system does not tell.
+pub(super) fn inode(path: &Path) -> Option<u64> {
+    let kind = fs::metadata(path).ok()?;
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        Some(kind.ino())
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = kind;
+        Some(0)
+    }
 }
 
 /// Begins a frame's file that no other process is writing; [`None`] while one is. A link is followed, unless it leads
