@@ -2,7 +2,7 @@
 //!
 //! A file is written under a hidden name that ends in `.part`, in the same folder, and renamed when it is finished. It
 //! is locked (`flock`) while it is written: the lock tells a file that a process is writing, on any machine that shares
-//! the disk, from one that a killed process left. Processes that share some work [claim](claim) files by that lock.
+//! the disk, from one that a killed process left. Processes that share work claim files by that lock: see [`claim`].
 
 pub mod claim;
 #[cfg(test)]
@@ -126,7 +126,7 @@ impl Unfinished {
     }
 }
 
-/// Removes the unfinished files in a folder whose [`label`] is `asked`, unless a process is writing them.
+/// Removes the unfinished files in a folder whose label is `asked`, unless a process is writing them.
 pub fn remove_leftovers(folder: &Path, asked: impl Fn(&[u8]) -> bool) {
     let Ok(entries) = fs::read_dir(folder) else {
         return;

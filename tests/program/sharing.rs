@@ -2,7 +2,7 @@
 #![cfg(unix)]
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io::{BufRead, BufReader, Read};
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
@@ -155,11 +155,12 @@ fn a_run_waits_for_the_frames_of_a_stopped_one() {
     for end in ["-CONT", "-KILL"] {
         let _ = fs::remove_dir_all(&out);
         let mut stopped = start(here, &["--threads", "1"]);
-        let holds = || {
-            listing(&out)
-                .iter()
-                .any(|name| name.ends_with(".shared.part"))
+        // A file that is not locked yet is not claimed.
+        let is_locked = |name: &&String| {
+            let file = File::open(out.join(name)).map(|file| file.try_lock());
+            name.ends_with(".shared.part") && matches!(file, Ok(Err(TryLockError::WouldBlock)))
         };
+        let holds = || listing(&out).iter().any(|name| is_locked(&name));
         until(|| {
             signal(&stopped, "-CONT");
             std::thread::sleep(Duration::from_millis(3));
