@@ -2,7 +2,11 @@
 //!
 //! A file is written under a hidden name that ends in `.part`, in the same folder, and renamed when it is finished. It
 //! is locked (`flock`) while it is written: the lock tells a file that a process is writing, on any machine that shares
-//! the disk, from one that a killed process left.
+//! the disk, from one that a killed process left. Processes that share work claim files by that lock: see [`claim`].
+
+pub mod claim;
+#[cfg(test)]
+mod tests;
 
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, TryLockError};
@@ -75,23 +79,9 @@ impl Unfinished {
     /// What creating a file in the same folder returns; a file that may not be written is there.
     pub fn new(path: &Path) -> io::Result<Self> {
         let path = led_to(path)?;
-        let replaced = fs::metadata(&path).ok().filter(fs::Metadata::is_file);
-        if replaced.is_some() {
-            check_writable(&path)?;
-        }
-        let mut prefix = OsString::from(".");
-        prefix.push(path.file_name().map(label).unwrap_or_default());
-        prefix.push(".");
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(&prefix).suffix(ENDING).rand_bytes(RANDOM);
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // The kernel applies the umask.
-            builder.permissions(fs::Permissions::from_mode(0o666));
-        }
+        let mode = replaced_mode(&path)?;
         loop {
-            let temporary = builder.tempfile_in(folder_of(&path)).map_err(bare)?;
+            let temporary = create(&path, None)?;
             // Before the lock another process may have taken the file for a leftover. Where files cannot be locked,
             // none does.
             let is_taken = matches!(
@@ -99,13 +89,17 @@ impl Unfinished {
                 Err(TryLockError::WouldBlock)
             ) || !temporary.path().exists();
             if !is_taken {
-                if let Some(replaced) = replaced {
-                    // Disks without modes refuse, and have none to keep.
-                    let _ = temporary.as_file().set_permissions(replaced.permissions());
-                }
-                return Ok(Self { temporary, path });
+                return Ok(Self::with_mode(temporary, path, mode));
             }
         }
+    }
+
+    fn with_mode(temporary: NamedTempFile, path: PathBuf, mode: Option<fs::Permissions>) -> Self {
+        if let Some(mode) = mode {
+            // Disks without modes refuse, and have none to keep.
+            let _ = temporary.as_file().set_permissions(mode);
+        }
+        Self { temporary, path }
     }
 
     /// The file to write to.
@@ -132,14 +126,14 @@ impl Unfinished {
     }
 }
 
-/// Removes the unfinished files in a folder whose [`label`] is `asked`, unless a process is writing them.
-fn remove_leftovers(folder: &Path, asked: impl Fn(&[u8]) -> bool) {
+/// Removes the unfinished files in a folder whose label is `asked`, unless a process is writing them.
+pub fn remove_leftovers(folder: &Path, asked: impl Fn(&[u8]) -> bool) {
     let Ok(entries) = fs::read_dir(folder) else {
         return;
     };
     for entry in entries.flatten() {
         if leftover(&entry.file_name()).is_some_and(&asked) {
-            remove_if_dead(&entry.path());
+            let _ = remove_if_dead(&entry.path());
         }
     }
 }
@@ -154,17 +148,95 @@ pub fn leftover(name: &OsStr) -> Option<&[u8]> {
     (is_ours && !label.is_empty()).then_some(label)
 }
 
-/// Removes an unfinished file, unless a process is writing it.
-pub fn remove_if_dead(path: &Path) {
-    // Opening a pipe would wait for its writer.
-    let is_file = fs::symlink_metadata(path).is_ok_and(|kind| kind.is_file());
-    // The file is deleted before it is unlocked: a writer that finds it locked chooses another name.
-    if is_file
-        && let Ok(file) = File::open(path)
-        && file.try_lock().is_ok()
-    {
-        let _ = fs::remove_file(path);
+/// Removes an unfinished file, unless a process is writing it. Returns whether it is gone.
+///
+/// # Errors
+/// It is no regular file, or cannot be locked or removed.
+pub fn remove_if_dead(path: &Path) -> io::Result<bool> {
+    let remove = || {
+        // Opening a pipe would wait for its writer.
+        if !fs::symlink_metadata(path)?.is_file() {
+            return Err(io::Error::other("not a regular file"));
+        }
+        let file = open_to_lock(path)?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Ok(false),
+            Err(TryLockError::Error(error)) => return Err(error),
+        }
+        // Before the lock the name may have become another file's. The file is deleted before it is unlocked: a writer
+        // that finds it locked chooses another name, or looks again.
+        if is_at(&file, path) {
+            fs::remove_file(path)?;
+        }
+        Ok(true)
+    };
+    match remove() {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(true),
+        gone => gone,
     }
+}
+
+/// Opens a file for a lock. On network file systems an exclusive lock needs the right to write; elsewhere another
+/// user's file can be locked too.
+fn open_to_lock(path: &Path) -> io::Result<File> {
+    let file = File::options().read(true).write(true).open(path);
+    file.or_else(|_| File::open(path))
+}
+
+/// Whether an open file has this name.
+fn is_at(file: &File, path: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        let place = |kind: fs::Metadata| (kind.dev(), kind.ino());
+        let (file, named) = (file.metadata(), fs::symlink_metadata(path));
+        file.is_ok_and(|file| named.is_ok_and(|named| place(file) == place(named)))
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = file;
+        path.exists()
+    }
+}
+
+/// Creates an unfinished file for `path`, with `part` or random letters and digits before the ending.
+///
+/// # Errors
+/// What the system returns.
+fn create(path: &Path, part: Option<&str>) -> io::Result<NamedTempFile> {
+    let mut prefix = prefix(path);
+    prefix.push(part.unwrap_or_default());
+    let random = if part.is_some() { 0 } else { RANDOM };
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&prefix).suffix(ENDING).rand_bytes(random);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // The kernel applies the umask.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder_of(path)).map_err(bare)
+}
+
+/// How the names of unfinished files for `path` begin.
+fn prefix(path: &Path) -> OsString {
+    let mut prefix = OsString::from(".");
+    prefix.push(path.file_name().map(label).unwrap_or_default());
+    prefix.push(".");
+    prefix
+}
+
+/// The mode of the file at `path`, if one is there.
+///
+/// # Errors
+/// It may not be written.
+fn replaced_mode(path: &Path) -> io::Result<Option<fs::Permissions>> {
+    let replaced = fs::metadata(path).ok().filter(fs::Metadata::is_file);
+    if replaced.is_some() {
+        check_writable(path)?;
+    }
+    Ok(replaced.map(|replaced| replaced.permissions()))
 }
 
 /// The label in an unfinished file's name: the final name, or for a long one its checksum.
@@ -238,140 +310,5 @@ fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn names(folder: &Path) -> Vec<String> {
-        let mut names: Vec<String> = fs::read_dir(folder)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
-        names.sort();
-        names
-    }
-
-    #[test]
-    fn what_a_killed_process_left_is_removed_and_what_a_live_one_writes_is_not() {
-        let folder = tempfile::tempdir().unwrap();
-        let here = folder.path();
-        let path = here.join("f_1.png");
-        fs::write(here.join(".f_1.png.Ab3xY9.part"), "half").unwrap();
-        fs::write(here.join(".f_2.png.Ab3xY9.part"), "another's").unwrap();
-        fs::write(here.join(".f_1.png.notes.part"), "somebody's own").unwrap();
-        let mut alive = Unfinished::new(&path).unwrap();
-        alive.file().write_all(b"slow").unwrap();
-        write_whole(&path, |file| file.write_all(b"fast")).unwrap();
-        assert_eq!(fs::read(&path).unwrap(), b"fast");
-        assert_eq!(names(here).len(), 4, "{:?}", names(here));
-        alive.finish().unwrap();
-        assert_eq!(fs::read(&path).unwrap(), b"slow");
-        assert_eq!(
-            names(here),
-            [".f_1.png.notes.part", ".f_2.png.Ab3xY9.part", "f_1.png"]
-        );
-    }
-
-    #[test]
-    fn a_failure_leaves_the_old_file_and_nothing_else() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.table");
-        fs::write(&path, "old").unwrap();
-        let failed = write_whole(&path, |file| {
-            file.write_all(b"new")?;
-            Err(io::Error::other("the disk is gone"))
-        });
-        assert!(failed.is_err());
-        assert_eq!(fs::read(&path).unwrap(), b"old");
-        assert_eq!(names(folder.path()), ["a.table"]);
-    }
-
-    #[test]
-    #[cfg(unix)]
-    fn links_are_followed_whether_or_not_they_lead_to_a_file() {
-        use std::os::unix::fs::symlink;
-
-        let folder = tempfile::tempdir().unwrap();
-        let here = folder.path();
-        fs::create_dir(here.join("real")).unwrap();
-        symlink("real/b", here.join("a")).unwrap();
-        symlink("c", here.join("real/b")).unwrap();
-        fs::write(here.join("real/.c.Ab3xY9.part"), "half").unwrap();
-        for content in ["new", "newer"] {
-            write_whole(&here.join("a"), |file| file.write_all(content.as_bytes())).unwrap();
-            assert_eq!(fs::read_to_string(here.join("real/c")).unwrap(), content);
-        }
-        assert_eq!(names(here), ["a", "real"]);
-        assert_eq!(names(&here.join("real")), ["b", "c"]);
-
-        symlink("new/folder", here.join("out")).unwrap();
-        make_folder(&here.join("out/within")).unwrap();
-        assert!(here.join("new/folder/within").is_dir());
-
-        symlink("round", here.join("round")).unwrap();
-        assert!(write_whole(&here.join("round"), |_| Ok(())).is_err());
-        assert!(make_folder(&here.join("round/within")).is_err());
-        assert!(here.join("round").is_symlink());
-    }
-
-    #[test]
-    #[cfg(unix)]
-    fn a_read_only_file_is_not_replaced_and_other_modes_are_kept() {
-        use std::os::unix::fs::PermissionsExt;
-
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.png");
-        fs::write(&path, "old").unwrap();
-        let set = |mode| fs::set_permissions(&path, fs::Permissions::from_mode(mode)).unwrap();
-        set(0o444);
-        let error = write_whole(&path, |file| file.write_all(b"new")).unwrap_err();
-        assert!(error.to_string().contains("read-only"), "{error}");
-        assert_eq!(fs::read(&path).unwrap(), b"old");
-        for mode in [0o600, 0o664, 0o777] {
-            set(mode);
-            write_whole(&path, |file| file.write_all(b"new")).unwrap();
-            let kept = fs::metadata(&path).unwrap().permissions().mode();
-            assert_eq!(kept & 0o7777, mode);
-        }
-        assert_eq!(names(folder.path()), ["a.png"]);
-    }
-
-    #[test]
-    fn the_longest_names_that_a_file_can_have() {
-        let folder = tempfile::tempdir().unwrap();
-        let name = "n".repeat(255);
-        let path = folder.path().join(&name);
-        let leftover = format!(
-            ".{}.Ab3xY9.part",
-            label(OsStr::new(&name)).to_str().unwrap()
-        );
-        fs::write(folder.path().join(leftover), "half").unwrap();
-        write_whole(&path, |file| file.write_all(b"all")).unwrap();
-        assert_eq!(names(folder.path()), [name]);
-    }
-
-    #[test]
-    fn only_unfinished_files_are_leftovers() {
-        let label = |name: &str| {
-            leftover(OsStr::new(name)).map(|label| String::from_utf8(label.to_vec()).unwrap())
-        };
-        assert_eq!(label(".f_01.png.Ab3xY9.part").as_deref(), Some("f_01.png"));
-        assert_eq!(label(".a.b.c.000000.part").as_deref(), Some("a.b.c"));
-        for name in [
-            "f_01.png",
-            ".f_01.png",
-            ".part",
-            "..Ab3xY9.part",
-            ".Ab3xY9.part",
-            ".f.Ab3xY.part",
-            ".f.Ab-xY9.part",
-            "f.Ab3xY9.part",
-            ".f.Ab3xY9.part~",
-        ] {
-            assert_eq!(label(name), None, "{name}");
-        }
     }
 }

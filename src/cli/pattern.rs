@@ -80,6 +80,13 @@ impl Pattern {
             .join(format!("{}{number}{}", self.before, self.after))
     }
 
+    /// The pattern in place of a frame's file, the same however it was written.
+    pub(super) fn numberless(&self) -> PathBuf {
+        let number = "#".repeat(self.width);
+        self.folder
+            .join(format!("{}{number}{}", self.before, self.after))
+    }
+
     /// A frame's number as printf writes it: the sign is one of the digits.
     fn written(&self, number: i64) -> String {
         format!("{number:0width$}", width = self.width)
@@ -174,6 +181,8 @@ mod tests {
             assert_eq!(pattern.number(name.as_bytes()), None, "{name}");
         }
         assert_eq!(pattern.number(b"f_1000.png"), Some(1000));
+        assert_eq!(pattern.numberless(), Path::new("f_###.png"));
+        assert_eq!(pattern.number(b"f_###.png"), None);
     }
 
     #[test]

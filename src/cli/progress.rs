@@ -40,6 +40,7 @@ impl Report {
             other => other,
         };
         FrameProgress {
+            report: self,
             kind,
             bar: frame_bar(kind, total, pixels),
             megapixels: pixels as f64 / 1e6,
@@ -92,6 +93,7 @@ pub(super) enum ProgressKind {
 
 /// The progress of frames, which several threads report.
 pub(super) struct FrameProgress {
+    report: Report,
     kind: ProgressKind,
     /// Counts the frames; it is drawn for [`ProgressKind::Auto`] only.
     bar: ProgressBar,
@@ -109,6 +111,19 @@ impl FrameProgress {
     /// Counts a frame that was finished before.
     pub(super) fn skipped(&self) {
         self.tell(|bar| bar.dec_length(1));
+    }
+
+    /// Tells that nothing is left to draw but frames that other runs have claimed.
+    pub(super) fn waiting(&self, frames: u64) {
+        let line = format!(
+            "waiting for {} that other runs are drawing; Ctrl-C ends the waiting",
+            count(frames, "frame")
+        );
+        if self.kind == ProgressKind::Openjd {
+            let _ = writeln!(io::stderr(), "openjd_status: {line}");
+        } else {
+            self.bar.suspend(|| self.report.note(line));
+        }
     }
 
     /// Counts a frame, and prints a line if one is due.

@@ -22,6 +22,7 @@ mod long_runs;
 mod outputs;
 mod pages;
 mod readers;
+mod sharing;
 mod skies;
 mod sky_faults;
 mod table_faults;

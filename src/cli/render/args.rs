@@ -20,6 +20,17 @@ use crate::scene::{DEFAULT_SCENE, ImageSize, Override};
 ///
 /// Finished frames of the same scene, sky, table and version are kept: the same command continues an interrupted run.
 /// The first Ctrl-C or SIGTERM finishes the frames that are begun, the second ends the run at once.
+///
+/// Several runs of one command share the numbered files of an animation, on one machine or on several that see one
+/// folder: each frame is drawn by the run that first locks its unfinished file. A run ends when all its frames are
+/// there: it waits for those that other runs are drawing, and draws those of runs that were killed. A run with another
+/// scene, sky, table or version is refused while others draw the same files. With --overwrite, frames that other runs
+/// have drawn since this one began are kept. Single pictures and films are not shared: each run makes its own, and the
+/// last to end replaces the others'.
+///
+/// On a network file system each machine must see the others' locks (flock): NFS 4, NFS 3 without the mount options
+/// `nolock` and `local_lock`, Lustre with the mount option `flock`. Without locks each run draws every frame that is
+/// missing when it comes to it.
 #[derive(Debug, Args)]
 #[expect(
     clippy::struct_excessive_bools,

@@ -4,6 +4,7 @@
 //! ([`run`]) and reported ([`summary`]).
 
 mod args;
+mod claims;
 mod draw;
 mod explain;
 mod exr;

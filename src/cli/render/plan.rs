@@ -139,14 +139,16 @@ impl<'a> Plan<'a> {
 
     /// Whether a frame of a sequence is there already, and is to be kept.
     pub(super) fn is_finished(&self, number: i64, origin: &FrameOrigin) -> bool {
-        match &self.destination {
-            Destination::Sequence(pattern) if !self.args.overwrite => {
-                let origin = origin.of_frame(number);
-                let file = pattern.file(number);
-                sequence::is_finished(&file, self.most_bytes(), |file| self.made(file, &origin))
-            }
-            _ => false,
-        }
+        !self.args.overwrite && self.is_there(number, origin)
+    }
+
+    /// Whether a frame of a sequence is there already, whole and of this origin.
+    pub(super) fn is_there(&self, number: i64, origin: &FrameOrigin) -> bool {
+        let Destination::Sequence(pattern) = &self.destination else {
+            return false;
+        };
+        let (file, origin) = (pattern.file(number), origin.of_frame(number));
+        sequence::is_finished(&file, self.most_bytes(), |file| self.made(file, &origin))
     }
 
     /// What the frames are made of, apart from their number.
@@ -219,7 +221,7 @@ impl<'a> Plan<'a> {
     }
 
     /// The bits of a PNG picture's samples: one where a mask's edges are hard and no number is asked for.
-    fn depth(&self) -> u8 {
+    pub(super) fn depth(&self) -> u8 {
         let is_hard = !self.first.antialias() || !self.args.method.is_table();
         match self.form {
             Form::Grey8 if is_hard && self.args.bits.is_none() => 1,

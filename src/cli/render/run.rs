@@ -1,8 +1,11 @@
 //! The run: frames are drawn, written and counted.
 
+use std::collections::HashMap;
 use std::convert::Infallible;
+use std::io::{self, Write};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use bytesize::ByteSize;
@@ -13,6 +16,7 @@ use super::super::method::Method;
 use super::super::pattern::Pattern;
 use super::super::progress::{FrameProgress, ProgressKind, Report, warn};
 use super::super::writable;
+use super::claims::Claims;
 use super::draw::{DrawnFrame, FrameReport, FrameSource};
 use super::film::{Broken, Film};
 use super::memory;
@@ -21,8 +25,12 @@ use super::plan::Plan;
 use super::run_stats::RunStats;
 use super::sequence::{self, Survey};
 use super::{options, sky};
+use crate::output::claim::RunMark;
 use crate::output::make_folder;
 use crate::sky::SkySource;
+
+/// The time between two looks at frames that other runs have claimed.
+const PAUSE: Duration = Duration::from_millis(100);
 
 /// What a run did.
 pub(super) struct Outcome {
@@ -58,9 +66,6 @@ pub(super) fn run(plan: &Plan<'_>, method: &Method, report: Report) -> anyhow::R
     let start = Instant::now();
     let (animation, form) = (plan.animation, plan.form);
     let stats = FrameSource::with(animation, form, method, sky, &row_done, |frames| {
-        if let Destination::Sequence(pattern) = &plan.destination {
-            prepare(plan, pattern, frames, &origin)?;
-        }
         let kind = match plan.args.progress {
             ProgressKind::Auto if plan.count == 1 => ProgressKind::None,
             kind => kind,
@@ -79,7 +84,7 @@ pub(super) fn run(plan: &Plan<'_>, method: &Method, report: Report) -> anyhow::R
                 let (size, rate) = (plan.first.image(), plan.animation.rate());
                 run.film(Film::begin(plan.format, destination, size, rate)?)?;
             }
-            Destination::Sequence(pattern) => run.sequence(pattern),
+            Destination::Sequence(pattern) => run.sequence(pattern)?,
             destination => run.picture(destination)?,
         }
         anyhow::Ok(run.stats)
@@ -110,13 +115,24 @@ fn read_sky(
     Ok(Some(Arc::new(source)))
 }
 
-/// Makes the folder of a sequence, and checks that there is room for its files.
+/// What was there of a sequence when a run began.
+struct Before {
+    /// How many frames had a file that may be kept.
+    present: u64,
+    /// The [numbers](sequence::inode) of the files that are to be overwritten.
+    inodes: HashMap<i64, u64>,
+    /// Refuses runs with other settings until it is dropped.
+    _mark: Option<RunMark>,
+}
+
+/// Makes the folder of a sequence, and checks that there is room for its files, and that no run with other settings is
+/// drawing them.
 fn prepare(
     plan: &Plan<'_>,
     pattern: &Pattern,
     frames: &FrameSource<'_>,
     origin: &FrameOrigin,
-) -> anyhow::Result<()> {
+) -> anyhow::Result<Before> {
     let folder = pattern.folder();
     make_folder(folder).map_err(|error| {
         anyhow::anyhow!(
@@ -125,11 +141,19 @@ fn prepare(
         )
     })?;
     let all = options::all_frames(plan.animation);
+    let mark = sequence::join(pattern, origin, plan.depth());
     let Survey {
         present,
         foreign,
         left_over,
-    } = sequence::survey(pattern, plan.frames, &all, plan.is_ours());
+        is_contested,
+    } = sequence::survey(pattern, plan.frames, &all, plan.is_ours(), mark.as_ref());
+    if is_contested {
+        anyhow::bail!(
+            "{pattern}: another run is drawing these files with another scene, sky, table or version; wait until it \
+             ends, or choose another name with -o"
+        );
+    }
     let files = |numbers: Vec<i64>| numbers.into_iter().map(|number| pattern.file(number));
     if !foreign.is_empty() && !plan.args.overwrite {
         return Err(sequence::foreign(files(foreign)));
@@ -147,7 +171,16 @@ fn prepare(
         let bytes = missing.saturating_mul(sample(plan, frames, origin)?);
         writable::check_space(&pattern.file(1), bytes)?;
     }
-    Ok(())
+    let mut inodes = HashMap::new();
+    if plan.args.overwrite {
+        let inode = |number| Some((number, sequence::inode(&pattern.file(number))?));
+        inodes.extend(plan.frames.iter().filter_map(inode));
+    }
+    Ok(Before {
+        present: if plan.args.overwrite { 0 } else { present },
+        inodes,
+        _mark: mark,
+    })
 }
 
 /// The size of the largest file of the first, the middle and the last frame.
@@ -178,64 +211,116 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Draws the frames that are `wanted`, until the run is interrupted.
+    /// Draws the frames of `numbers`, about `count`, that are `wanted`, until the run is interrupted.
     fn draw<E: Send>(
         &self,
+        numbers: impl Iterator<Item = i64> + Send,
+        count: u64,
         wanted: impl Fn(i64) -> bool + Sync,
         done: impl Fn(DrawnFrame<'_>) -> Result<(), E> + Sync,
     ) -> Result<(), E> {
-        let plan = self.plan;
-        let numbers = plan
-            .frames
-            .iter()
-            .take_while(|_| !self.interrupt.is_asked());
+        let numbers = numbers.take_while(|_| !self.interrupt.is_asked());
         self.frames
-            .draw_all(numbers, plan.count, self.at_a_time, wanted, done)
+            .draw_all(numbers, count, self.at_a_time, wanted, done)
+    }
+
+    /// Draws all frames of the plan, until the run is interrupted.
+    fn draw_plan<E: Send>(
+        &self,
+        done: impl Fn(DrawnFrame<'_>) -> Result<(), E> + Sync,
+    ) -> Result<(), E> {
+        self.draw(self.plan.frames.iter(), self.plan.count, |_| true, done)
     }
 
     /// Draws one frame into one file, or to the standard output.
     fn picture(&self, destination: &Destination) -> anyhow::Result<()> {
-        self.draw(
-            |_| true,
-            |drawn| self.encode_and_write(drawn, |_, file| destination.write(file)),
-        )
+        self.draw_plan(|drawn| self.encode_and_write(drawn, |file| destination.write(file)))
     }
 
-    /// Draws each missing frame into its file. A frame that fails stops no other.
-    fn sequence(&self, pattern: &Pattern) {
-        let wanted = |number| {
-            let is_finished = self.plan.is_finished(number, &self.origin);
-            if is_finished {
-                self.stats.finished_before();
-                self.progress.skipped();
-            }
-            !is_finished
-        };
+    /// Draws each missing frame into its file, unless another run does, and waits until all are there. A frame that
+    /// fails stops no other.
+    ///
+    /// # Errors
+    /// The folder cannot be made or has no room, or another run draws these frames with other settings.
+    fn sequence(&self, pattern: &Pattern) -> anyhow::Result<()> {
+        let before = prepare(self.plan, pattern, self.frames, &self.origin)?;
+        let claims = Claims::default();
         // The reason without the frame's own file name: equal reasons of many frames are reported together.
-        let write = |number, file: &[u8]| {
-            sequence::write(&pattern.file(number), file, &self.plan.inputs)
-                .map_err(|error| anyhow::anyhow!("cannot be written: {error}"))
+        let unwritable = |error: io::Error| anyhow::anyhow!("cannot be written: {error}");
+        let wanted = |number| {
+            if self.is_finished(number, &before) {
+                return false;
+            }
+            match sequence::claim(&pattern.file(number), &self.plan.inputs) {
+                // Another run may have finished the frame before the claim.
+                Ok(Some(_)) if self.is_finished(number, &before) => return false,
+                Ok(Some(file)) => {
+                    claims.keep(number, file);
+                    return true;
+                }
+                Ok(None) => claims.leave(number),
+                Err(error) => self.stats.failed(number, &unwritable(error)),
+            }
+            false
         };
         let done = |drawn: DrawnFrame<'_>| {
             let number = drawn.number;
-            if let Err(error) = self.encode_and_write(drawn, write) {
-                self.stats.failed(number, &error);
+            if let Some(mut claimed) = claims.take(number) {
+                let write = |bytes: &[u8]| {
+                    let written = claimed.file().write_all(bytes);
+                    written.and_then(|()| claimed.finish()).map_err(unwritable)
+                };
+                if let Err(error) = self.encode_and_write(drawn, write) {
+                    self.stats.failed(number, &error);
+                }
             }
             Ok::<(), Infallible>(())
         };
-        let Ok(()) = self.draw(wanted, done);
+        let Ok(()) = self.draw(self.plan.frames.iter(), self.plan.count, wanted, done);
+        for round in 0.. {
+            let left = claims.take_left();
+            if left.is_empty() || self.interrupt.is_asked() {
+                break;
+            }
+            if round == 1 {
+                self.progress.waiting(left.len() as u64);
+            }
+            if round > 0 {
+                thread::sleep(PAUSE);
+            }
+            let Ok(()) = self.draw(left.iter().copied(), left.len() as u64, wanted, done);
+        }
+        self.stats.attribute(before.present);
+        if self.stats.counts().by_others > 0 {
+            sequence::clean(pattern, self.plan.frames);
+        }
+        Ok(())
+    }
+
+    /// Whether a frame is there already, and counts it if so. With `--overwrite` the files that were there `before` do
+    /// not count, but those that other runs of the same command put in their place.
+    fn is_finished(&self, number: i64, before: &Before) -> bool {
+        let file = self.plan.destination.file(number);
+        let old = before.inodes.get(&number);
+        let is_old = old.is_some_and(|&old| sequence::inode(&file) == Some(old));
+        let is_finished = !is_old && self.plan.is_there(number, &self.origin);
+        if is_finished {
+            self.stats.finished_before();
+            self.progress.skipped();
+        }
+        is_finished
     }
 
     fn encode_and_write(
         &self,
         DrawnFrame { number, pixels, .. }: DrawnFrame<'_>,
-        write: impl Fn(i64, &[u8]) -> anyhow::Result<()>,
+        write: impl FnOnce(&[u8]) -> anyhow::Result<()>,
     ) -> anyhow::Result<()> {
         let (pixels, effort) = pixels?;
         let start = Instant::now();
         let file = self.plan.encode(pixels, &self.origin.of_frame(number))?;
         let encoded = Instant::now();
-        write(number, &file)?;
+        write(&file)?;
         self.done(number, effort, encoded - start, encoded.elapsed());
         Ok(())
     }
@@ -259,7 +344,7 @@ impl Run<'_> {
             spare().push(memory);
             Ok::<(), Broken>(())
         };
-        let drawn = self.draw(|_| true, done);
+        let drawn = self.draw_plan(done);
         if drawn.is_ok() && self.stats.counts().drawn < self.plan.count {
             // The run was interrupted: an unfinished film is not kept.
             return Ok(());

@@ -20,6 +20,8 @@ pub(super) struct Counts {
     pub(super) drawn: u64,
     /// Frames that were there already.
     pub(super) finished_before: u64,
+    /// Frames that other runs drew since this one began.
+    pub(super) by_others: u64,
     /// Frames whose curves were not accurate enough.
     pub(super) ray_by_ray: u64,
     /// The frame with the largest error of an edge, the first of equals.
@@ -64,6 +66,14 @@ impl RunStats {
     /// Counts a frame that was there already.
     pub(super) fn finished_before(&self) {
         self.counts().finished_before += 1;
+    }
+
+    /// Attributes to other runs the frames that were there when this one came to them, beyond the `present` ones of its
+    /// beginning.
+    pub(super) fn attribute(&self, present: u64) {
+        let mut counts = self.counts();
+        counts.by_others = counts.finished_before.saturating_sub(present);
+        counts.finished_before -= counts.by_others;
     }
 
     /// Counts a frame that could not be drawn or written.

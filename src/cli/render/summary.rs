@@ -21,14 +21,14 @@ pub(super) fn report(
     report: Report,
 ) -> anyhow::Result<()> {
     let counts = &*outcome.stats.counts();
-    let (drawn, kept) = (counts.drawn, counts.finished_before);
+    let (drawn, kept, others) = (counts.drawn, counts.finished_before, counts.by_others);
     if drawn > 0 {
         report_errors(plan, counts, report);
         if plan.args.timings {
             print_timings(counts, outcome);
         }
     }
-    let finished = drawn + kept;
+    let finished = drawn + kept + others;
     let interrupted = outcome.interrupt.check(|| {
         let rest = match plan.destination {
             _ if finished == plan.count => "",
@@ -57,12 +57,14 @@ pub(super) fn report(
             Destination::Sequence(pattern) => pattern.file(number).display().to_string(),
             _ => destination.to_string(),
         };
-        if drawn == 0 {
+        if others > 0 {
+            report.note(format_args!("{file}: another run drew the frame"));
+        } else if drawn == 0 {
             report.note(format_args!("{file}: the frame was finished before"));
         } else {
             report.note(format_args!("{file}: {what}, drawn in {time}"));
         }
-    } else if drawn == 0 {
+    } else if drawn + others == 0 {
         report.note(format_args!(
             "{destination}: all frames were finished before"
         ));
@@ -73,8 +75,12 @@ pub(super) fn report(
             1 => "; 1 was finished before".into(),
             kept => format!("; {kept} were finished before"),
         };
+        let elsewhere = match others {
+            0 => String::new(),
+            others => format!("; other runs drew {others}"),
+        };
         report.note(format_args!(
-            "{destination}: {} of {what}, in {time}, {rate:.1} frames/s{before}",
+            "{destination}: {} of {what}, in {time}, {rate:.1} frames/s{before}{elsewhere}",
             count(drawn, "frame")
         ));
     }
