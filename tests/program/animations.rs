@@ -429,7 +429,7 @@ fn one_frame_is_told_of_as_one_with_its_name() {
         stderr.contains("1 frame of 96 × 54") && stderr.contains("; 1 was finished before"),
         "{stderr}"
     );
-    assert!(!stderr.contains("1 frames"), "{stderr}");
+    assert!(!stderr.contains(" 1 frames"), "{stderr}");
 }
 
 #[test]
