@@ -26,10 +26,10 @@ use crate::orbit::{MIN_U, OrbitError};
 ///
 /// The header of a list names its columns. Where a ray starts: u0 (its inverse radius, in inverse Schwarzschild radii),
 /// or r0 (its radius, in Schwarzschild radii), or else --from. Its direction, by the first one of these that is there:
-/// dudphi (du/dφ, in inverse Schwarzschild radii; inf is straight in and -inf straight out), b (the impact parameter, in
-/// Schwarzschild radii, of a ray that goes inward), angle (the angle from the hole's direction that a static observer
-/// sees, in degrees: 0 is straight in, above 90 the ray goes outward). Its name: id, else rays are numbered from 1. Other
-/// columns, blank lines and lines that begin with # are ignored.
+/// dudphi (du/dφ, in inverse Schwarzschild radii; inf is straight in and -inf straight out), b (the impact parameter,
+/// in Schwarzschild radii, of a ray that goes inward), angle (the angle from the hole's direction that a static
+/// observer sees, in degrees: 0 is straight in, above 90 the ray goes outward). Its name: id, else rays are numbered
+/// from 1. Other columns, blank lines and lines that begin with # are ignored.
 ///
 /// Writes the columns id,u0,dudphi,b,event,radius,angle,windings,deflection, for each ray in the order in which they
 /// happen: its inbound and outbound crossings of each --radius, its turning point (periapsis or apoapsis), then its
@@ -86,9 +86,9 @@ pub(super) struct TraceArgs {
     #[arg(long, value_name = "I,J", requires = "camera", value_parser = pixel_index, allow_hyphen_values = true)]
     pixel: Vec<PixelIndex>,
     /// Write N points of each ray's path, 3 to 1000000, from its start until it falls in (r = 1) or escapes to the
-    /// radius of --to. They are equally spaced in arc: in length along the path, drawn in the flat plane of x and y. The
-    /// periapsis or apoapsis is one of them, and the spacings before and after it may differ by a few parts in N. Paths
-    /// are exact, by elliptic integrals
+    /// radius of --to. They are equally spaced in arc: in length along the path, drawn in the flat plane of x and y.
+    /// The periapsis or apoapsis is one of them, and the spacings before and after it may differ by a few parts in N.
+    /// Paths are exact, by elliptic integrals
     #[arg(
         long,
         value_name = "N",

@@ -1,13 +1,15 @@
 //! Points of a ray's path, equally spaced along its arc.
 //!
-//! The path is drawn in the flat plane of the polar coordinates (r, φ), where `ds = √(dr² + r² dφ²) = √(u² + w²)/u² dφ`,
-//! `w = du/dφ`. A turning point (periapsis or apoapsis) splits it into two legs. Each leg is marched inward, from its
-//! outer end, in steps of at most a quarter of the radius and of a quarter of a radian. Gauss's rule gives the length
-//! of a step. Marching finds where along the path a point lies, to some 1e-12 of the length.
+//! The path is drawn in the flat plane of the polar coordinates (r, φ), where
+//! `ds = √(dr² + r² dφ²) = √(u² + w²)/u² dφ`, `w = du/dφ`. A turning point (periapsis or apoapsis) splits it into two
+//! legs. Each leg is marched inward, from its outer end, in steps of at most a quarter of the radius and of a quarter of
+//! a radian. Gauss's rule gives the length of a step. Marching finds where along the path a point lies, to some 1e-12
+//! of the length.
 //!
 //! The point itself is exact: elliptic integrals give its radius at its angle, or, where the path is more radial than
 //! tangential, its angle at its radius. Of the two it is the better conditioned one.
 
+use super::elliptic::turning_u;
 use super::events::Fate;
 use super::exact::Exact;
 use super::invariants::{Orbit, OrbitPoint};
@@ -79,9 +81,15 @@ pub fn arc_points(ray: Ray, count: usize, farthest: f64) -> Result<Vec<ArcPoint>
         };
         points.extend((1..share).map(|j| {
             let (angle, point) = leg.at(j as f64 / share as f64, orbit.delta);
-            exact_point(&orbit, branch, angle, point)
+            let exact = exact_point(&orbit, branch, angle, point);
+            // Rounding leads past the ends of a leg whose ends are neighbours.
+            let (least, greatest) = (leg.first.u.min(leg.last.u), leg.first.u.max(leg.last.u));
+            ArcPoint {
+                u: exact.u.clamp(least, greatest),
+                ..exact
+            }
         }));
-        points.push(leg.last());
+        points.push(leg.last);
     }
     Ok(points)
 }
@@ -150,7 +158,7 @@ fn legs(orbit: &Orbit, end: OrbitPoint) -> Vec<Leg> {
     let after = 0.5 * Exact.around(orbit, end, end);
     let middle = ArcPoint {
         angle: before,
-        u: turning.u,
+        u: turning_u(orbit),
     };
     let last = ArcPoint {
         angle: Exact.around(orbit, orbit.start, end),
@@ -230,10 +238,6 @@ impl Leg {
 
     fn length(&self) -> f64 {
         self.steps.last().map_or(0.0, |step| step.length)
-    }
-
-    fn last(&self) -> ArcPoint {
-        self.last
     }
 
     /// Returns the angle and the point at a share of the leg's length, counted from its first point.

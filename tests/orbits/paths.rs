@@ -89,6 +89,9 @@ fn points_of_a_path_are_on_the_ray_and_so_are_its_ends_and_its_turning_point() {
         );
         if let Some(turning) = Exact.turning_point(ray).unwrap() {
             assert!(points.iter().any(is(turning)), "{ray:?}");
+            let outside = ray.u() < 2.0 / 3.0;
+            // No periapsis is inside the photon sphere, no apoapsis outside.
+            assert_eq!(outside, 1.0 / turning.u > 1.5, "{ray:?}: {turning:?}");
         }
         for ArcPoint { angle, u } in points {
             if angle == 0.0 || angle == end.angle {
@@ -96,8 +99,8 @@ fn points_of_a_path_are_on_the_ray_and_so_are_its_ends_and_its_turning_point() {
             }
             let found = Exact.u_at_angle(ray, angle).unwrap();
             let found = found.unwrap_or_else(|| panic!("{ray:?} at {angle} has ended"));
-            // A rounding of the angle moves a far point by |du/dφ| r² times it. Near critical, the angle is a difference of
-            // longer ones.
+            // A rounding of the angle moves a far point by |du/dφ| r² times it. Near critical, the angle is a
+            // difference of longer ones.
             let rounding =
                 64.0 * f64::EPSILON * (1.0 + angle) * ray.impact_parameter().recip() / (u * u);
             let error = (1.0 / found - 1.0 / u).abs();

@@ -146,22 +146,20 @@ impl Columns {
             Some(id) => id.to_owned(),
             None => number.to_string(),
         };
-        let value = number_in(self.direction.column(), fields[self.direction_column]);
+        let (direction, column) = (self.direction, self.direction_column);
+        let value = || number_in(direction.column(), fields[column]);
         let ray = match self.start {
-            Start::Fixed(radius) => self.direction.ray(radius, value?)?,
-            Start::Radius(column) => self
-                .direction
-                .ray(number_in("r0", fields[column])?, value?)?,
+            Start::Fixed(radius) => direction.ray(radius, value()?)?,
+            Start::Radius(column) => direction.ray(number_in("r0", fields[column])?, value()?)?,
             Start::InverseRadius(column) => {
                 let u0 = number_in("u0", fields[column])?;
                 let at = |dudphi| Ray::new(u0, dudphi).map_err(|error| error.to_string());
-                let value = value?;
-                if self.direction == Direction::Slope {
-                    at(value)?
+                if direction == Direction::Slope {
+                    at(value()?)?
                 } else {
-                    // The start comes first: its message names u0. Going over the radius could change its last bit.
+                    // Checks the start first: its message names u0. Going over the radius could change its last bit.
                     at(0.0)?;
-                    at(self.direction.ray(1.0 / u0, value)?.dudphi())?
+                    at(direction.ray(1.0 / u0, value()?)?.dudphi())?
                 }
             }
         };

@@ -63,8 +63,8 @@ pub(super) fn rays_of_pixels(
         let (width, height) = (view.width(), view.height());
         if i >= width || j >= height {
             return Err(misuse(format!(
-                "--pixel {i},{j} is outside of the picture, which has {width}x{height} pixels: columns 0 to {} and rows \
-                 0 to {}",
+                "--pixel {i},{j} is outside of the picture, which has {width}x{height} pixels: columns 0 to {} and \
+                 rows 0 to {}",
                 width - 1,
                 height - 1
             )));

@@ -26,8 +26,8 @@ pub(super) fn open(input: Option<&Path>) -> anyhow::Result<(Box<dyn BufRead>, St
         }
         // Without a word the program would seem to hang.
         None if io::stdin().is_terminal() => Err(misuse(
-            "there are no rays to trace; name a CSV file with the columns u0 and dudphi, send one to the standard input \
-             (`-` reads it from the terminal), or give rays by --from and --b",
+            "there are no rays to trace; name a CSV file with the columns u0 and dudphi, send one to the standard \
+             input (`-` reads it from the terminal), or give rays by --from and --b",
         )),
         _ => {
             let name = "standard input";

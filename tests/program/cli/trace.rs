@@ -24,8 +24,8 @@ struct Row {
     angle: f64,
 }
 
-/// The crossings and ends that `trace` printed, grouped by ray. A ray's id is its number, and the windings are its angle
-/// in turns.
+/// The crossings and ends that `trace` printed, grouped by ray. A ray's id is its number, and the windings are its
+/// angle in turns.
 fn rows(csv: &str) -> Vec<Vec<Row>> {
     let mut lines = csv.lines();
     assert_eq!(lines.next(), Some(HEADER));
@@ -214,9 +214,10 @@ fn trace_tells_turning_points_and_deflections() {
         let fields: Vec<&str> = line.split(',').collect();
         let ratio: f64 = fields[1].parse().unwrap();
         let deflection: f64 = fields[2].parse().unwrap();
-        let b = format!("{:?}", ratio * 1.5 * 3.0_f64.sqrt());
-        // The deflection is that of the whole path, wherever the ray starts on it, and in both directions.
-        for from in ["20", "3000"] {
+        let b = ratio * 1.5 * 3.0_f64.sqrt();
+        let [b, near, far] = [b, b + 10.0, 100.0 * b].map(|number| format!("{number:?}"));
+        // The deflection is that of the whole path, wherever the ray starts on it.
+        for from in [&near, &far] {
             let args = [
                 "trace", "--method", "exact", "--radius", "2.7", "--from", from, "--b", &b,
             ];
