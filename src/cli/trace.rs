@@ -39,9 +39,10 @@ use crate::orbit::{MIN_U, OrbitError};
 ///
 /// With --paths, writes points of each ray's path as columns id,phi,r,x,y instead: phi, the angle swept from the start,
 /// is in radians, r in Schwarzschild radii, and so are x = r cos phi and y = r sin phi. x and y lie in the plane in
-/// which the ray moves, with the hole at 0,0 and the start at y = 0. With --camera, the columns scene_x,scene_y,scene_z
-/// follow: the same point in the scene's axes.
+/// which the ray moves, with the hole at 0,0 and the start at y = 0. With --camera, the columns
+/// `scene_x,scene_y,scene_z` follow: the same point in the scene's axes.
 #[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(super) struct TraceArgs {
     /// The CSV list of rays, or - for the standard input [default: -]
     #[arg(value_name = "FILE")]
@@ -114,6 +115,13 @@ pub(super) struct TraceArgs {
     #[command(flatten)]
     method: MethodArgs,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  darkness trace --from 30 --b 2.5,2.6,3 --paths 200 > paths.csv
+  darkness trace --from 30 --angle 4,5,6 --method exact
+  darkness trace --camera classic --pixel 960,400 --paths 200
+  printf 'id,r0,b\\nA,30,2.7\\n' | darkness trace --radius 3,12";
 
 fn radius(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {

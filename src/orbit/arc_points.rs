@@ -2,9 +2,9 @@
 //!
 //! The path is drawn in the flat plane of the polar coordinates (r, φ), where
 //! `ds = √(dr² + r² dφ²) = √(u² + w²)/u² dφ`, `w = du/dφ`. A turning point (periapsis or apoapsis) splits it into two
-//! legs. Each leg is marched inward, from its outer end, in steps of at most a quarter of the radius and of a quarter of
-//! a radian. Gauss's rule gives the length of a step. Marching finds where along the path a point lies, to some 1e-12
-//! of the length.
+//! legs. Each leg is marched inward, from its outer end, in steps of at most a quarter of the radius and a quarter of a
+//! radian. Gauss's rule gives the length of a step. Marching finds where along the path a point lies, to some 1e-12 of
+//! the length.
 //!
 //! The point itself is exact: elliptic integrals give its radius at its angle, or, where the path is more radial than
 //! tangential, its angle at its radius. Of the two it is the better conditioned one.
