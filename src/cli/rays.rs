@@ -265,6 +265,15 @@ mod tests {
                 }
             }
         }
+        for (degrees, slope) in [
+            (0.0, f64::INFINITY),
+            (90.0, 0.0),
+            (150.0, -slope),
+            (180.0, f64::NEG_INFINITY),
+        ] {
+            let ray = Direction::Degrees.ray(8.0, degrees).unwrap();
+            assert!(ray.dudphi() == slope || (ray.dudphi() / slope - 1.0).abs() < 1e-14);
+        }
         let both = RayReader::new(&b"u0,b\n"[..], "list".into(), Some(8.0)).unwrap_err();
         assert!(both.to_string().contains("leave out --from"), "{both}");
     }

@@ -55,6 +55,11 @@ impl Direction {
                     "the angle {value:?} is not allowed: the angle from the hole's direction lies from 0 to 180 degrees"
                 ));
             }
+            // No number of radians gives a slope of exactly 0, or of -inf.
+            Self::Degrees if value == 90.0 => Ray::new(1.0 / radius, 0.0),
+            Self::Degrees if value > 90.0 => {
+                Ray::from_angle(radius, (180.0 - value).to_radians()).map(Ray::reversed)
+            }
             Self::Degrees => Ray::from_angle(radius, value.to_radians()),
         };
         ray.map_err(|error| match error {
