@@ -3,30 +3,37 @@
 //! The `csv` crate has no limit on the length of a line, does not trim around quotes, and lets a field go on over
 //! several lines, so that one stray quote would swallow a whole list: hence this reader.
 
+mod columns;
+
 use std::io::{BufRead, Read};
 
-use crate::orbit::Ray;
+use columns::Columns;
+pub(super) use columns::Direction;
+pub use columns::ListedRay;
+
+use crate::orbit::OrbitError;
 use crate::quotation::beginning;
 
 /// Reads rays from CSV text with a header: an iterator of rays, or of the reasons why lines hold none.
 ///
-/// The columns `u0` and `dudphi` may be anywhere; others are ignored. Fields may have spaces around them and may be in
-/// quotes, and end on the line on which they begin. Blank lines and lines that begin with `#` are skipped.
+/// A column `u0` or `r0` tells where each ray starts, and the first one of `dudphi`, `b` and `angle` that there is
+/// tells its direction. A column `id` names it. Columns may be in any order, others are ignored. Fields may have spaces
+/// around them and may be in quotes, and end on the line on which they begin. Blank lines and lines that begin with `#`
+/// are skipped.
 #[derive(Debug)]
 pub struct RayReader<R> {
-    input: R,
-    name: String,
-    line: u64,
-    text: Vec<u8>,
-    header: Header,
+    lines: Lines<R>,
+    columns: Columns,
+    rays: u64,
 }
 
-/// How many columns there are, and which of them hold the ray's numbers.
-#[derive(Debug, Clone, Copy, Default)]
-struct Header {
-    columns: usize,
-    u0: usize,
-    dudphi: usize,
+/// The lines of a list.
+#[derive(Debug)]
+struct Lines<R> {
+    input: R,
+    name: String,
+    number: u64,
+    text: Vec<u8>,
 }
 
 /// What is wrong in a list of rays, and where.
@@ -38,6 +45,14 @@ pub struct RaysError {
 }
 
 impl RaysError {
+    /// The error of a ray that cannot be followed.
+    pub(super) fn unfollowed(id: &str, error: OrbitError) -> Self {
+        Self {
+            place: format!("ray {}", beginning(id, MOST_REPEATED)),
+            problem: Problem::Line(error.to_string()),
+        }
+    }
+
     /// Whether no further line can be read.
     pub fn is_final(&self) -> bool {
         matches!(self.problem, Problem::Input(_))
@@ -58,56 +73,59 @@ enum Problem {
 const LONGEST_LINE: usize = 1 << 20;
 
 impl<R: BufRead> RayReader<R> {
-    /// Reads the header of `input`, which messages call `name`.
+    /// Reads the header of `input`, which messages call `name`. The rays of a list without the columns `u0` and `r0`
+    /// start at the radius `from`.
     ///
     /// # Errors
     /// [`RaysError`] where the header is missing or does not name the columns.
-    pub fn new(input: R, name: String) -> Result<Self, RaysError> {
-        let mut reader = Self {
+    pub fn new(input: R, name: String, from: Option<f64>) -> Result<Self, RaysError> {
+        let mut lines = Lines {
             input,
             name,
-            line: 0,
+            number: 0,
             text: Vec::new(),
-            header: Header::default(),
         };
-        match reader.read_header() {
-            Ok(header) => Ok(Self { header, ..reader }),
-            Err(problem) => Err(reader.at_this_line(problem)),
+        let columns = match lines.next() {
+            Ok(Some(header)) => Columns::new(header, from).map_err(Problem::Line),
+            Ok(None) => Err(Problem::Line(
+                "there is no header: the first line names the columns, u0 and dudphi for example"
+                    .into(),
+            )),
+            Err(problem) => Err(problem),
+        };
+        match columns {
+            Ok(columns) => Ok(Self {
+                lines,
+                columns,
+                rays: 0,
+            }),
+            Err(problem) => Err(lines.error(problem)),
         }
     }
 
-    /// Returns an error about the line read last.
-    pub fn error(&self, problem: &impl ToString) -> RaysError {
-        self.at_this_line(Problem::Line(problem.to_string()))
+    fn read_ray(&mut self) -> Result<Option<ListedRay>, Problem> {
+        // A line that is no text counts too, so that numbers do not depend on what is wrong with a line.
+        self.rays += 1;
+        let Some(text) = self.lines.next()? else {
+            return Ok(None);
+        };
+        let ray = self.columns.ray(text, self.rays);
+        ray.map(Some).map_err(Problem::Line)
     }
+}
 
-    fn at_this_line(&self, problem: Problem) -> RaysError {
-        let place = match self.line {
+impl<R: BufRead> Lines<R> {
+    /// Returns an error about the line read last.
+    fn error(&self, problem: Problem) -> RaysError {
+        let place = match self.number {
             0 => self.name.clone(),
             line => format!("{}, line {line}", self.name),
         };
         RaysError { place, problem }
     }
 
-    fn read_header(&mut self) -> Result<Header, Problem> {
-        let text = self.next_line()?.ok_or_else(|| {
-            let problem =
-                "there is no header: the first line names the columns, u0 and dudphi among them";
-            Problem::Line(problem.into())
-        })?;
-        header(text).map_err(Problem::Line)
-    }
-
-    fn read_ray(&mut self) -> Result<Option<Ray>, Problem> {
-        let header = self.header;
-        match self.next_line()? {
-            Some(text) => ray(text, header).map(Some).map_err(Problem::Line),
-            None => Ok(None),
-        }
-    }
-
     /// Returns the next line that is neither blank nor a comment, trimmed.
-    fn next_line(&mut self) -> Result<Option<&str>, Problem> {
+    fn next(&mut self) -> Result<Option<&str>, Problem> {
         loop {
             self.text.clear();
             let mut limited = self.input.by_ref().take(LONGEST_LINE as u64 + 1);
@@ -117,7 +135,7 @@ impl<R: BufRead> RayReader<R> {
             if read == 0 {
                 return Ok(None);
             }
-            self.line += 1;
+            self.number += 1;
             if read > LONGEST_LINE {
                 return Err(Problem::Input(format!(
                     "the line is longer than {LONGEST_LINE} bytes, so this is not a list of rays"
@@ -137,36 +155,13 @@ impl<R: BufRead> RayReader<R> {
 }
 
 impl<R: BufRead> Iterator for RayReader<R> {
-    type Item = Result<Ray, RaysError>;
+    type Item = Result<ListedRay, RaysError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let read = self.read_ray();
-        read.map_err(|problem| self.at_this_line(problem))
+        read.map_err(|problem| self.lines.error(problem))
             .transpose()
     }
-}
-
-fn header(line: &str) -> Result<Header, String> {
-    let names = fields(line)?;
-    Ok(Header {
-        columns: names.len(),
-        u0: position(&names, "u0")?,
-        dudphi: position(&names, "dudphi")?,
-    })
-}
-
-fn ray(line: &str, header: Header) -> Result<Ray, String> {
-    let fields = fields(line)?;
-    if fields.len() != header.columns {
-        return Err(format!(
-            "the line has {} fields and the header {}; each line has one for each column",
-            fields.len(),
-            header.columns
-        ));
-    }
-    let u0 = number("u0", fields[header.u0])?;
-    let dudphi = number("dudphi", fields[header.dudphi])?;
-    Ray::new(u0, dudphi).map_err(|error| error.to_string())
 }
 
 /// Returns the fields of a line, without the spaces and quotes around them.
@@ -195,28 +190,6 @@ fn bare(field: &str) -> &str {
     inner.map_or(field, str::trim)
 }
 
-fn position(names: &[&str], column: &str) -> Result<usize, String> {
-    let mut places = (0..names.len()).filter(|&k| names[k] == column);
-    match (places.next(), places.next()) {
-        (Some(place), None) => Ok(place),
-        (Some(_), Some(_)) => Err(format!("the header names the column {column} twice")),
-        (None, _) => Err(format!(
-            "the header names no column {column}: it must name u0 and dudphi, and has {}",
-            listed(names)
-        )),
-    }
-}
-
-fn number(column: &str, text: &str) -> Result<f64, String> {
-    text.parse().map_err(|_| {
-        format!(
-            "{column} is {}, which is not a number: write 0.25 or 2.5e-1 (and inf or -inf for a dudphi straight in or \
-             out)",
-            quoted(text)
-        )
-    })
-}
-
 /// How many characters of a field, and how many names of columns, a message repeats.
 const MOST_REPEATED: usize = 40;
 
@@ -241,10 +214,11 @@ fn listed(names: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::orbit::Ray;
 
     fn read(text: &[u8]) -> Result<Vec<(f64, f64)>, String> {
-        let rays = RayReader::new(text, "list".into()).map_err(|error| error.to_string())?;
-        rays.map(|ray| ray.map(|ray| (ray.u(), ray.dudphi())))
+        let rays = RayReader::new(text, "list".into(), None).map_err(|error| error.to_string())?;
+        rays.map(|ray| ray.map(|listed| (listed.ray.u(), listed.ray.dudphi())))
             .collect::<Result<_, _>>()
             .map_err(|error| error.to_string())
     }
@@ -264,6 +238,57 @@ mod tests {
         assert_eq!(read(b"u0,dudphi\n"), Ok(vec![]));
     }
 
+    /// The same ray by its slope, its impact parameter and its angle, from an inverse radius, a radius and `--from`.
+    #[test]
+    fn columns_decide_how_a_ray_is_given() {
+        let known = Ray::from_angle(8.0, 30.0_f64.to_radians()).unwrap();
+        let (slope, b) = (known.dudphi(), known.impact_parameter());
+        let start = [
+            ("u0,", "0.125,", None),
+            ("r0,", "8,", None),
+            ("", "", Some(8.0)),
+        ];
+        let direction = [
+            ("dudphi,angle", format!("{slope:?},90")),
+            ("angle,b", format!("90,{b:?}")),
+            ("angle", "30".into()),
+        ];
+        for (start, at, from) in start {
+            for (name, value) in &direction {
+                let text = format!("{start}{name},id\n{at}{value},\"a, b\"\n{at}{value},3\n");
+                let rays = RayReader::new(text.as_bytes(), "list".into(), from).unwrap();
+                let rays: Vec<ListedRay> = rays.map(Result::unwrap).collect();
+                assert_eq!([&rays[0].id, &rays[1].id], ["a, b", "3"]);
+                for ListedRay { ray, .. } in rays {
+                    assert_eq!(ray.u(), 0.125, "{text}");
+                    assert!((ray.dudphi() / slope - 1.0).abs() < 1e-14, "{text}");
+                }
+            }
+        }
+        for (degrees, slope) in [
+            (0.0, f64::INFINITY),
+            (90.0, 0.0),
+            (150.0, -slope),
+            (180.0, f64::NEG_INFINITY),
+        ] {
+            let ray = Direction::Degrees.ray(8.0, degrees).unwrap();
+            assert!(ray.dudphi() == slope || (ray.dudphi() / slope - 1.0).abs() < 1e-14);
+        }
+        let both = RayReader::new(&b"u0,b\n"[..], "list".into(), Some(8.0)).unwrap_err();
+        assert!(both.to_string().contains("leave out --from"), "{both}");
+    }
+
+    #[test]
+    fn rays_without_an_id_are_numbered_with_those_that_are_refused() {
+        let text = &b"# 1\nr0,b\n30,2\n30,x\n\n30,\xFF\n30,3\n"[..];
+        let rays = RayReader::new(text, "list".into(), None).unwrap();
+        let ids: Vec<String> = rays
+            .filter_map(Result::ok)
+            .map(|listed| listed.id)
+            .collect();
+        assert_eq!(ids, ["1", "4"]);
+    }
+
     #[test]
     fn lines_without_a_ray_are_refused_by_number_with_what_is_allowed() {
         for (text, line, words) in [
@@ -278,6 +303,16 @@ mod tests {
             (b"u0,dudphi\n0.1,0.1,\n", 2, "3 fields"),
             (b"u0,dudphi\n0.1,fast\n", 2, "dudphi is \"fast\""),
             (b"u0,dudphi\n,1\n", 2, "u0 is \"\""),
+            (b"u0,r0,b\n", 1, "both u0 and r0"),
+            (b"u0,x\n", 1, "no column dudphi, b or angle"),
+            (b"b,u0,dudphi,b\n", 1, "b twice"),
+            (b"r0,b\n1,1\n", 2, "radius 1.0"),
+            (b"r0,b\n30,31\n", 2, "impact parameter 31.0"),
+            (b"u0,b\n0.5,-1\n", 2, "impact parameter -1.0"),
+            (b"u0,b\n2,-1\n", 2, "u0 = 2.0"),
+            (b"r0,angle\n30,181\n", 2, "180 degrees"),
+            (b"r0,angle\n30,nan\n", 2, "180 degrees"),
+            (b"id,r0,angle\n\"\",30,1\n", 2, "id is empty"),
             (b"u0,dudphi\n1.0,1\n", 2, "outside the horizon"),
             (b"u0,dudphi\ninf,1\n", 2, "outside the horizon"),
             (b"u0,dudphi\n0.1,nan\n", 2, "not a number"),
@@ -308,7 +343,7 @@ mod tests {
     #[test]
     fn a_file_without_line_ends_is_not_read_to_its_end() {
         let endless = std::io::BufReader::new(std::io::repeat(b'1'));
-        let error = RayReader::new(endless, "zeros".into()).unwrap_err();
+        let error = RayReader::new(endless, "zeros".into(), None).unwrap_err();
         assert!(error.to_string().contains("longer than"), "{error}");
     }
 }

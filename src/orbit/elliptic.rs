@@ -5,13 +5,21 @@
 //! within `1e-12 + 16 ε·condition` of the truth for every ray outside the horizon.
 
 use super::carlson::rf;
-use super::invariants::{CRITICAL_E2, Family, Orbit, OrbitPoint, three_u_minus_two};
+use super::invariants::{
+    CRITICAL_E2, Family, Orbit, OrbitPoint, PHOTON_SPHERE_U, three_u_minus_two,
+};
 
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
 /// Returns the inverse radius at which an orbit with `e² < 4/27` turns: u2 outside the photon sphere, u3 inside.
 pub(crate) fn turning_u(orbit: &Orbit) -> f64 {
-    turning_point(orbit).0
+    let (u, _) = turning_point(orbit);
+    // Rounding must not lead to the other side of the start or of the photon sphere.
+    match orbit.family {
+        Family::Scattered => u.clamp(orbit.start.u, PHOTON_SPHERE_U),
+        Family::Trapped => u.clamp(PHOTON_SPHERE_U.next_up(), orbit.start.u),
+        Family::Monotone => u,
+    }
 }
 
 /// Returns [`turning_u`], and its difference from the photon sphere's 2/3 to its own last digits.

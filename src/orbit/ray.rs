@@ -158,6 +158,15 @@ pub enum OrbitError {
         /// The radius given.
         radius: f64,
     },
+    /// A path that ends at a radius does not lead there.
+    #[error(
+        "the ray does not go outward through radius {radius:?}, where its path was to end: it starts or turns at or \
+         beyond it; end the path farther out"
+    )]
+    NotThrough {
+        /// The radius given.
+        radius: f64,
+    },
     /// A stepped solution did not end.
     #[error(
         "no end found within {steps} steps (reached φ = {angle:?}): the ray winds near the photon sphere; use a larger \

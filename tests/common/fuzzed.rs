@@ -16,7 +16,7 @@ use darkness::cli::rays::RayReader;
 use darkness::isoradial::{CurveSpec, Isoradials};
 use darkness::orbit::exact::Exact;
 use darkness::orbit::path::SweptAngles;
-use darkness::orbit::{Event, EventKind, Orbits, Ray};
+use darkness::orbit::{Event, EventKind, Orbits, Ray, arc_points};
 use darkness::render::needs::Needs;
 use darkness::render::{Form, coverage, mask};
 use darkness::scene::{Animation, Scene, View};
@@ -172,14 +172,14 @@ pub(crate) fn frames(bytes: &[u8]) {
 
 /// Reads the bytes as a list of rays: each line gives a ray or an error, and each ray ends.
 pub(crate) fn rays(bytes: &[u8]) {
-    let mut rays = match RayReader::new(bytes, "list".into()) {
+    let mut rays = match RayReader::new(bytes, "list".into(), None) {
         Ok(rays) => rays,
         Err(error) => return sentence(&error),
     };
     let lookup = draft().lookup();
     for row in &mut rays {
         let ray = match row {
-            Ok(ray) => ray,
+            Ok(listed) => listed.ray,
             Err(error) => {
                 sentence(&error);
                 if error.is_final() {
@@ -188,6 +188,13 @@ pub(crate) fn rays(bytes: &[u8]) {
                 continue;
             }
         };
+        match arc_points(ray, 5, 100.0) {
+            Ok(points) => assert!(
+                points.iter().all(|point| point.u > 0.0 && point.u <= 1.0),
+                "{ray:?}: {points:?}"
+            ),
+            Err(error) => sentence(&error),
+        }
         for events in [Exact.follow(ray, &RADII), lookup.follow(ray, &RADII)] {
             let events = match events {
                 Ok(events) => events,

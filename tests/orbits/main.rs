@@ -17,6 +17,7 @@ mod closed_forms;
 mod extreme_rays;
 mod grazing_rays;
 mod integration;
+mod paths;
 mod stepping_fails;
 mod swept_angles;
 mod turning_points;

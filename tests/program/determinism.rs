@@ -99,6 +99,8 @@ fn tables_pictures_and_angles_do_not_depend_on_threads_or_processor() {
         let rows = same_bytes(here, &[&trace[..], &options].concat(), None);
         assert!(rows.len() > 500_000, "only {} bytes", rows.len());
     }
+    let paths = same_bytes(here, &["trace", REFERENCE_RAYS, "--paths", "9"], None);
+    assert!(paths.len() > 1_000_000, "only {} bytes", paths.len());
 }
 
 #[test]
