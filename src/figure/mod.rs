@@ -23,6 +23,7 @@ mod svg;
 
 pub use contour::{Contour, Level, Quantity, contours};
 pub use csv::write_csv;
+pub use kurbo;
 pub use svg::{Paper, outline_svg, svg};
 
 /// How far a path may be from the exact curve, in pixels.
