@@ -54,8 +54,8 @@ pub(super) struct IsoradialsArgs {
     /// is no shift, more is a blueshift
     #[arg(long = "redshift", value_name = "G", value_parser = positive, value_delimiter = ',', allow_negative_numbers = true)]
     redshifts: Vec<f64>,
-    /// Observed bolometric fluxes of the scene's disk, with commas: g⁴ F/F_max, where F is the emitted flux (Page and
-    /// Thorne 1974) and F_max the greatest one
+    /// Observed bolometric fluxes of the scene's disk, with commas: g⁴ F, where g is the redshift and F
+    /// the emitted flux (Page and Thorne 1974) over its greatest value
     #[arg(long = "flux", value_name = "F", value_parser = positive, value_delimiter = ',', allow_negative_numbers = true)]
     fluxes: Vec<f64>,
     /// The number of images: 1 for the direct image, 2 for the ghost image too, up to 8

@@ -5,7 +5,7 @@ use core::f64::consts::TAU;
 use kurbo::{BezPath, PathEl};
 
 use super::TOLERANCE;
-use super::disk_image::DiskImage;
+use super::disk_image::{DiskImage, SeenPlace};
 use super::level::LevelGrid;
 use super::pen::Pen;
 use crate::scene::View;
@@ -82,17 +82,18 @@ pub fn contours(
     let mut contours = Vec::new();
     for order in 0..orders {
         let image = DiskImage::new(view, order);
-        let grid = |quantity| {
-            let is_asked_for = levels.iter().any(|level| level.quantity == quantity);
-            is_asked_for.then(|| LevelGrid::new(&image, quantity, (inner, outer)))
-        };
-        let (redshifts, fluxes) = (grid(Quantity::Redshift), grid(Quantity::Flux));
+        let needs_grid = levels
+            .iter()
+            .any(|level| level.quantity != Quantity::Radius);
+        let grid = needs_grid.then(|| LevelGrid::new(&image, (inner, outer)));
         for &level in levels {
             let mut pen = Pen::new(size, TOLERANCE);
-            match level.quantity {
-                Quantity::Radius => draw_isoradial(&image, level.value, &mut pen),
-                Quantity::Redshift => draw_level(redshifts.as_ref(), level.value, &mut pen),
-                Quantity::Flux => draw_level(fluxes.as_ref(), level.value, &mut pen),
+            match (level.quantity, &grid) {
+                (Quantity::Redshift, Some(grid)) => {
+                    grid.draw(SeenPlace::redshift, level.value, &mut pen);
+                }
+                (Quantity::Flux, Some(grid)) => grid.draw(SeenPlace::flux, level.value, &mut pen),
+                _ => draw_isoradial(&image, level.value, &mut pen),
             }
             let path = pen.finish();
             if !path.is_empty() {
@@ -109,11 +110,5 @@ fn draw_isoradial(image: &DiskImage<'_>, radius: f64, pen: &mut Pen) {
     for part in 0..PARTS {
         let at = |part: u32| TAU * f64::from(part) / f64::from(PARTS);
         pen.draw(&curve, at(part), at(part + 1));
-    }
-}
-
-fn draw_level(grid: Option<&LevelGrid<'_>>, value: f64, pen: &mut Pen) {
-    if let Some(grid) = grid {
-        grid.draw(value, pen);
     }
 }

@@ -35,6 +35,21 @@ pub(super) struct DiskImage<'a> {
 pub(super) struct SeenPlace {
     ray: PixelRay,
     u: f64,
+    /// g, the ratio of observed to emitted frequency.
+    redshift: f64,
+}
+
+impl SeenPlace {
+    /// Returns g, the ratio of observed to emitted frequency.
+    pub(super) fn redshift(&self) -> f64 {
+        self.redshift
+    }
+
+    /// Returns `g⁴ F/F_max`, the observed bolometric flux.
+    pub(super) fn flux(&self) -> f64 {
+        let square = self.redshift * self.redshift;
+        square * square * flux::relative(self.u)
+    }
 }
 
 impl<'a> DiskImage<'a> {
@@ -61,13 +76,15 @@ impl<'a> DiskImage<'a> {
         let mut spec = CurveSpec::all_round(self.view.u0(), self.view.slope_scale(), None);
         spec.u_edges = Some([u, u]);
         let kappa = spec.critical() + height_at(&spec, Edge::Inner, angle, &Exact);
+        let ray = PixelRay {
+            z: kappa,
+            ta: cosine,
+            tb: sine,
+        };
         SeenPlace {
-            ray: PixelRay {
-                z: kappa,
-                ta: cosine,
-                tb: sine,
-            },
+            ray,
             u,
+            redshift: self.geometry.sight(ray, self.order, u).redshift,
         }
     }
 
@@ -79,16 +96,5 @@ impl<'a> DiskImage<'a> {
             .map(|row| row[0] * z + row[1] * ta + row[2] * tb);
         let point = Point::new(wx / w, wy / w);
         (w > 0.0 && point.is_finite()).then_some(point)
-    }
-
-    /// Returns g, the ratio of observed to emitted frequency.
-    pub(super) fn redshift(&self, seen: &SeenPlace) -> f64 {
-        self.geometry.sight(seen.ray, self.order, seen.u).redshift
-    }
-
-    /// Returns `g⁴ F/F_max`, the observed bolometric flux.
-    pub(super) fn flux(&self, seen: &SeenPlace) -> f64 {
-        let g = self.redshift(seen);
-        g * g * g * g * flux::relative(seen.u)
     }
 }

@@ -16,7 +16,6 @@ use std::collections::BTreeMap;
 use kurbo::{Point, Vec2};
 use rayon::prelude::*;
 
-use super::contour::Quantity;
 use super::disk_image::{DiskImage, SeenPlace};
 use super::pen::Pen;
 
@@ -36,15 +35,23 @@ const STEPS: u32 = 64;
 /// the values, whose rounding moves a root by about 1e-11 of a cell.
 const CLOSE: f64 = 1e-9;
 
-/// The values of a quantity over the disk, in the image of one order.
+/// What is seen of the disk at the nodes of a grid, in the image of one order.
 pub(super) struct LevelGrid<'a> {
     image: &'a DiskImage<'a>,
-    quantity: Quantity,
     inner: f64,
     /// `ln(r_outer/r_inner)`.
     log_width: f64,
     /// Ring by ring, from the inner edge to the outer one.
-    values: Vec<f64>,
+    nodes: Vec<SeenPlace>,
+}
+
+/// The curve of one level.
+struct LevelCurve<'a> {
+    grid: &'a LevelGrid<'a>,
+    quantity: fn(&SeenPlace) -> f64,
+    level: f64,
+    /// How much greater than the level the quantity is at the nodes.
+    excess: Vec<f64>,
 }
 
 /// An edge of the grid: from node (ring, sector) to the next ring, or to the next sector.
@@ -64,31 +71,47 @@ struct CellPart {
 }
 
 impl<'a> LevelGrid<'a> {
-    /// Computes a quantity over the disk between two radii.
-    pub(super) fn new(
-        image: &'a DiskImage<'a>,
-        quantity: Quantity,
-        (inner, outer): (f64, f64),
-    ) -> Self {
+    /// Follows the rays of all nodes of the disk between two radii.
+    pub(super) fn new(image: &'a DiskImage<'a>, (inner, outer): (f64, f64)) -> Self {
         let mut grid = Self {
             image,
-            quantity,
             inner,
             log_width: libm::log(outer / inner),
-            values: Vec::new(),
+            nodes: Vec::new(),
         };
         let node = |node: usize| {
             let (ring, sector) = (node / SECTORS, node % SECTORS);
-            grid.value(Point::new(ring as f64, sector as f64))
+            grid.see(Point::new(ring as f64, sector as f64))
         };
-        let values = (0..(RINGS + 1) * SECTORS).into_par_iter().map(node);
-        grid.values = values.collect();
+        let nodes = (0..(RINGS + 1) * SECTORS).into_par_iter().map(node);
+        grid.nodes = nodes.collect();
         grid
     }
 
-    /// Draws the curve of a level.
-    pub(super) fn draw(&self, level: f64, pen: &mut Pen) {
-        let mut parts: Vec<Option<CellPart>> = self.parts(level).into_iter().map(Some).collect();
+    /// Draws the curve on which a quantity has a value.
+    pub(super) fn draw(&self, quantity: fn(&SeenPlace) -> f64, level: f64, pen: &mut Pen) {
+        let excess = self.nodes.iter().map(|seen| quantity(seen) - level);
+        let curve = LevelCurve {
+            grid: self,
+            quantity,
+            level,
+            excess: excess.collect(),
+        };
+        curve.draw(pen);
+    }
+
+    /// Returns what is seen of a place in units of cells.
+    fn see(&self, place: Point) -> SeenPlace {
+        let radius = self.inner * libm::exp(self.log_width * place.x / RINGS as f64);
+        let s = TAU * (place.y + OFFSET) / SECTORS as f64;
+        self.image.see(1.0 / radius, s)
+    }
+}
+
+impl LevelCurve<'_> {
+    /// Draws the curve: chains of parts that share roots.
+    fn draw(&self, pen: &mut Pen) {
+        let mut parts: Vec<Option<CellPart>> = self.parts().into_iter().map(Some).collect();
         let mut at_edge: BTreeMap<GridEdge, Vec<usize>> = BTreeMap::new();
         for (i, part) in parts.iter().enumerate() {
             for edge in part.iter().flat_map(|part| part.edges) {
@@ -108,14 +131,14 @@ impl<'a> LevelGrid<'a> {
                     roots.reverse();
                 }
                 edge = if edges[0] == edge { edges[1] } else { edges[0] };
-                self.draw_part(level, roots, pen);
+                self.draw_part(roots, pen);
             }
             pen.lift();
         }
     }
 
     /// Draws a curve between two roots of a cell.
-    fn draw_part(&self, level: f64, [a, b]: [Point; 2], pen: &mut Pen) {
+    fn draw_part(&self, [a, b]: [Point; 2], pen: &mut Pen) {
         let chord = b - a;
         if chord == Vec2::ZERO {
             return;
@@ -123,32 +146,33 @@ impl<'a> LevelGrid<'a> {
         let normal = Vec2::new(-chord.y, chord.x) / chord.hypot();
         let curve = |t: f64| {
             let base = a + t * chord;
-            let excess = |step: f64| self.value(base + step * normal) - level;
+            let excess = |step: f64| self.excess_at(base + step * normal);
             let root = if t == 0.0 || t == 1.0 {
                 Some(0.0)
             } else {
                 near_root(excess)
             };
-            self.image.point(&self.see(base + root? * normal))
+            self.grid.image.point(&self.grid.see(base + root? * normal))
         };
         pen.draw(&curve, 0.0, 1.0);
     }
 
-    /// Returns the parts of a level's curve, cell by cell.
-    fn parts(&self, level: f64) -> Vec<CellPart> {
+    /// Returns the parts of the curve, cell by cell.
+    fn parts(&self) -> Vec<CellPart> {
         let mut parts = Vec::new();
         for ring in 0..RINGS {
             for sector in 0..SECTORS {
-                self.cell(level, ring, sector, &mut parts);
+                self.cell(ring, sector, &mut parts);
             }
         }
         parts
     }
 
     /// Adds the parts of one cell.
-    fn cell(&self, level: f64, ring: usize, sector: usize, parts: &mut Vec<CellPart>) {
+    fn cell(&self, ring: usize, sector: usize, parts: &mut Vec<CellPart>) {
         let corners = [(0, 0), (1, 0), (1, 1), (0, 1)];
-        let values = corners.map(|(r, s)| self.node(ring + r, sector + s) - level);
+        let values =
+            corners.map(|(r, s)| self.excess[(ring + r) * SECTORS + (sector + s) % SECTORS]);
         let edge = |ring: usize, sector: usize, radial: bool| GridEdge {
             ring,
             sector: sector % SECTORS,
@@ -172,7 +196,7 @@ impl<'a> LevelGrid<'a> {
                 let (from, to) = if i < 2 { (i, i + 1) } else { (i + 1, i) };
                 let (a, b) = (corner(from), corner(to));
                 let share = bracketed_root(
-                    |share| self.value(a.lerp(b, share)) - level,
+                    |share| self.excess_at(a.lerp(b, share)),
                     (values[from % 4], values[to % 4]),
                 );
                 a.lerp(b, share)
@@ -186,7 +210,7 @@ impl<'a> LevelGrid<'a> {
             [i, j] => join(i, j),
             [0, 1, 2, 3] => {
                 let middle = Point::new(ring as f64 + 0.5, sector as f64 + 0.5);
-                if (self.value(middle) > level) == (values[0] > 0.0) {
+                if (self.excess_at(middle) > 0.0) == (values[0] > 0.0) {
                     join(0, 1);
                     join(2, 3);
                 } else {
@@ -198,25 +222,9 @@ impl<'a> LevelGrid<'a> {
         }
     }
 
-    /// Returns the quantity at a node. The sectors start again after the last.
-    fn node(&self, ring: usize, sector: usize) -> f64 {
-        self.values[ring * SECTORS + sector % SECTORS]
-    }
-
-    /// Returns the quantity at a place in units of cells.
-    fn value(&self, place: Point) -> f64 {
-        let seen = self.see(place);
-        match self.quantity {
-            Quantity::Radius => place.x,
-            Quantity::Redshift => self.image.redshift(&seen),
-            Quantity::Flux => self.image.flux(&seen),
-        }
-    }
-
-    fn see(&self, place: Point) -> SeenPlace {
-        let radius = self.inner * libm::exp(self.log_width * place.x / RINGS as f64);
-        let s = TAU * (place.y + OFFSET) / SECTORS as f64;
-        self.image.see(1.0 / radius, s)
+    /// Returns how much greater than the level the quantity is at a place in units of cells.
+    fn excess_at(&self, place: Point) -> f64 {
+        (self.quantity)(&self.grid.see(place)) - self.level
     }
 }
 

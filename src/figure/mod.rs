@@ -8,7 +8,7 @@
 //! |---|---|---|
 //! | [`Quantity::Radius`] | r, in Schwarzschild radii | one isoradial curve, point by point by [`crate::isoradial::height_at`] |
 //! | [`Quantity::Redshift`] | g, the ratio of observed to emitted frequency, 1/(1 + z) | roots along isoradial curves |
-//! | [`Quantity::Flux`] | g⁴ F/F_max, the observed bolometric flux | roots along isoradial curves |
+//! | [`Quantity::Flux`] | `g⁴ F/F_max`, the observed bolometric flux | roots along isoradial curves |
 //!
 //! # Accuracy
 //! Every point that a path interpolates is exact up to rounding: it comes from elliptic integrals. Between these points

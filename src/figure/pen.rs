@@ -9,6 +9,10 @@ use kurbo::{BezPath, Point};
 /// A part of the curve is halved no more often than this.
 const DEEPEST: u32 = 40;
 
+/// A path has no more checked cubics than this. Most have some dozens. In pictures of a field of view so narrow that
+/// rounding is more than the tolerance, halves are no better than the whole.
+const MOST_PARTS: u32 = 1 << 12;
+
 /// A part is halved this often before it may be left out: what its seven points do not show is then narrow.
 const SHALLOWEST: u32 = 2;
 
@@ -23,6 +27,8 @@ pub(super) struct Pen {
     size: (f64, f64),
     tolerance: f64,
     path: BezPath,
+    /// How many parts were tried.
+    parts: u32,
     /// The last subpath's beginning and end, if a part can follow it.
     open: Option<(Point, Point)>,
 }
@@ -34,6 +40,7 @@ impl Pen {
             size,
             tolerance,
             path: BezPath::new(),
+            parts: 0,
             open: None,
         }
     }
@@ -61,8 +68,11 @@ impl Pen {
     fn part(&mut self, curve: &impl Fn(f64) -> Option<Point>, from: f64, to: f64, depth: u32) {
         let points: [Option<Point>; 7] =
             core::array::from_fn(|i| curve(from + (to - from) * (i as f64 / 6.0)));
+        self.parts += 1;
+        let is_spent = self.parts > MOST_PARTS;
         let is_out = depth >= SHALLOWEST && self.is_beyond(&points);
-        if is_out || depth > DEEPEST {
+        let is_whole = points.iter().all(Option::is_some);
+        if is_out || depth > DEEPEST || (is_spent && !is_whole) {
             self.lift();
             return;
         }
@@ -79,7 +89,7 @@ impl Pen {
             && let near = [(1.0 / 6.0, c1), (0.5, c2), (5.0 / 6.0, c3)]
                 .into_iter()
                 .all(|(t, exact)| at(&cubic, t).distance(exact) <= 0.5 * self.tolerance)
-            && near
+            && (near || is_spent)
         {
             self.add(cubic);
             return;

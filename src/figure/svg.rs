@@ -15,7 +15,7 @@ const STROKE: f64 = 1.0 / 540.0;
 pub enum Paper<'a> {
     /// White paper, with dark curves.
     White,
-    /// A PNG file, which fills the picture, with bright curves.
+    /// A PNG file, which fills the picture, with coloured curves.
     Png(&'a [u8]),
 }
 
@@ -25,7 +25,8 @@ pub enum Paper<'a> {
 pub fn svg(contours: &[Contour], size: ImageSize, paper: Paper<'_>) -> String {
     let colours = match paper {
         Paper::White => ["#000", "#b2182b", "#2166ac"],
-        Paper::Png(_) => ["#fff", "#ffb347", "#6ecbff"],
+        // These are seen before black and before white.
+        Paper::Png(_) => ["#00a2ff", "#ff6a00", "#1fae3f"],
     };
     let stroke = f64::from(size.height) * STROKE;
     let mut body = format!(
