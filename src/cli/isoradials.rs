@@ -48,15 +48,33 @@ pub(super) struct IsoradialsArgs {
     format: Option<FigureFormat>,
     /// Radii in Schwarzschild radii, with commas: the images of whole rings, whatever the scene's disk [default:
     /// 3,5,10,15, if no curves are asked for]
-    #[arg(long = "radius", value_name = "R", value_parser = radius, value_delimiter = ',', allow_negative_numbers = true)]
+    #[arg(
+        long = "radius",
+        value_name = "R",
+        value_parser = radius,
+        value_delimiter = ',',
+        allow_negative_numbers = true
+    )]
     radii: Vec<f64>,
     /// Redshifts of the scene's disk, with commas: g, the ratio of observed to emitted frequency, which is 1/(1 + z). 1
     /// is no shift, more is a blueshift
-    #[arg(long = "redshift", value_name = "G", value_parser = positive, value_delimiter = ',', allow_negative_numbers = true)]
+    #[arg(
+        long = "redshift",
+        value_name = "G",
+        value_parser = positive,
+        value_delimiter = ',',
+        allow_negative_numbers = true
+    )]
     redshifts: Vec<f64>,
     /// Observed bolometric fluxes of the scene's disk, with commas: g⁴ F, where g is the redshift and F
     /// the emitted flux (Page and Thorne 1974) over its greatest value
-    #[arg(long = "flux", value_name = "F", value_parser = positive, value_delimiter = ',', allow_negative_numbers = true)]
+    #[arg(
+        long = "flux",
+        value_name = "F",
+        value_parser = positive,
+        value_delimiter = ',',
+        allow_negative_numbers = true
+    )]
     fluxes: Vec<f64>,
     /// The number of images: 1 for the direct image, 2 for the ghost image too, up to 8
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=MOST_ORDERS))]

@@ -12,8 +12,8 @@ const FLAT: f64 = 5e-3;
 
 /// Writes one row for each point of the curves, after a header: `curve,quantity,level,order,closed,x,y,b,alpha`.
 ///
-/// * `curve`: the number of the connected curve, from 1. Its points follow one another, and a closed curve ends with its
-///   first point. Straight lines between them are at most 0.01 pixels from the exact curve.
+/// * `curve`: the number of the connected curve, from 1. Its points follow one another, and a closed curve ends with
+///   its first point. Straight lines between them are at most 0.01 pixels from the exact curve.
 /// * `quantity`, `level`: what is constant along it: `radius` in Schwarzschild radii, `redshift` as g = 1/(1 + z),
 ///   `flux` as `g⁴ F/F_max`.
 /// * `order`: 0 for the direct image, 1 for the ghost image. `closed`: true or false.

@@ -4,8 +4,8 @@
 //! A place of the disk has two coordinates: `q = ln(r/r_inner)/ln(r_outer/r_inner)` from 0 to 1, and the azimuth s of
 //! [`DiskImage`]. The quantity is computed at the nodes of a grid over both. Where two neighbouring nodes lie on two
 //! sides of the level, the edge between them has a root, which is found to rounding. Each cell joins the roots of its
-//! four edges by pairs (where all four have one, the value in the cell's middle tells which). So the roots become chains:
-//! closed ones, or ones that end at the disk's edges.
+//! four edges by pairs (where all four have one, the value in the cell's middle tells which). So the roots become
+//! chains: closed ones, or ones that end at the disk's edges.
 //!
 //! Between two roots A and B of a cell the curve is `A + t (B − A)`, moved along the chord's normal to the root there.
 //! So every point of the curve is exact, and the [`Pen`] takes as many as it needs.
@@ -62,8 +62,8 @@ struct GridEdge {
     radial: bool,
 }
 
-/// A part of the curve within one cell: two edges, and their roots in units of cells, the second sector beside the first
-/// even where the azimuth starts again.
+/// A part of the curve within one cell: two edges, and their roots in units of cells, the second sector beside the
+/// first even where the azimuth starts again.
 #[derive(Debug, Clone, Copy)]
 struct CellPart {
     edges: [GridEdge; 2],

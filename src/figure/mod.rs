@@ -6,12 +6,13 @@
 //!
 //! | quantity | what is constant | how it is found |
 //! |---|---|---|
-//! | [`Quantity::Radius`] | r, in Schwarzschild radii | one isoradial curve, point by point by [`crate::isoradial::height_at`] |
+//! | [`Quantity::Radius`] | r, in Schwarzschild radii | one isoradial curve, point by point |
 //! | [`Quantity::Redshift`] | g, the ratio of observed to emitted frequency, 1/(1 + z) | roots along isoradial curves |
 //! | [`Quantity::Flux`] | `g⁴ F/F_max`, the observed bolometric flux | roots along isoradial curves |
 //!
 //! # Accuracy
-//! Every point that a path interpolates is exact up to rounding: it comes from elliptic integrals. Between these points
+//! Every point that a path interpolates is exact up to rounding: it comes from elliptic integrals, by
+//! [`crate::isoradial::height_at`]. Between these points
 //! a cubic is at most [`TOLERANCE`] pixels off, as measured at three more exact points.
 
 mod contour;

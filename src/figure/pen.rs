@@ -1,8 +1,9 @@
 //! Draws an exact curve as cubics.
 //!
-//! A cubic interpolates four exact points, at the parameters 0, 1/3, 2/3 and 1. Where the curve is nearly a quartic, its
-//! distance from the cubic is proportional to `t(t − 1/3)(t − 2/3)(1 − t)`, which is at most 1/81, and 0.94/81 at t =
-//! 1/6 and 5/6. The distance is measured there and at 1/2, and half the tolerance is left for what is not a quartic.
+//! A cubic interpolates four exact points, at the parameters 0, 1/3, 2/3 and 1. Where the curve is nearly a quartic,
+//! its distance from the cubic is proportional to `t(t − 1/3)(t − 2/3)(1 − t)`, which is at most 1/81, and 0.94/81 at
+//! t = 1/6 and 5/6. The distance is measured there and at 1/2, and half the tolerance is left for what is not a
+//! quartic.
 
 use kurbo::{BezPath, Point};
 

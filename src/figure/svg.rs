@@ -19,9 +19,9 @@ pub enum Paper<'a> {
     Png(&'a [u8]),
 }
 
-/// Returns curves as an SVG document, one `path` each. Those of the direct image are solid, those of higher orders
-/// dashed. The `class` of a path names its quantity and whether it is `direct` or a `ghost`, its `title` tells its level
-/// and order.
+/// Returns curves as an SVG document, one `path` each. Those of the direct image are solid, those of higher
+/// orders dashed. The `class` of a path names its quantity and whether it is `direct` or a `ghost`. Its `title` tells
+/// its level and order.
 pub fn svg(contours: &[Contour], size: ImageSize, paper: Paper<'_>) -> String {
     let colours = match paper {
         Paper::White => ["#000", "#b2182b", "#2166ac"],

@@ -1,5 +1,5 @@
-//! Guards against curves and outlines that are not where the rays are: Bézier paths against Luminet's figure of 1979 and
-//! against exact rays through the places that they pass, filled outlines against masks.
+//! Guards against curves and outlines that are not where the rays are: Bézier paths against Luminet's figure of 1979
+//! and against exact rays through the places that they pass, filled outlines against masks.
 
 use std::f64::consts::{PI, TAU};
 
@@ -20,8 +20,8 @@ fn levels(quantity: Quantity, values: &[f64]) -> Vec<Level> {
     values.iter().map(level).collect()
 }
 
-/// A scene of Luminet's figure: 40 Schwarzschild radii in a square, from so far away that the camera's radius is as good
-/// as infinite.
+/// A scene of Luminet's figure: 40 Schwarzschild radii in a square, from so far away that the camera's radius is as
+/// good as infinite.
 fn plate(side: u32) -> Scene {
     Scene::from_toml(&format!(
         "[camera]\nradius = 1e12\ninclination = 80.0\nfov = {}\n[disk]\ninner = 3.0\nouter = 20.0\n\
@@ -237,6 +237,30 @@ fn curves_around_the_greatest_blueshift_are_closed() {
     let closed: Vec<bool> = curves.iter().map(Contour::is_closed).collect();
     assert!(!closed[0] && closed[closed.len() - 1], "{closed:?}");
     assert!(closed.is_sorted() && closed.len() < 40, "{closed:?}");
+}
+
+/// Guards against a curve that is halved without end: a pixel here is smaller than the rounding of the curve.
+#[test]
+fn a_field_of_view_below_rounding_has_a_curve() {
+    let wide = Scene::builtin("classic").unwrap();
+    let view = View::new(&wide);
+    let asked = levels(Quantity::Radius, &[5.0]);
+    let curves = contours(&view, (3.0, 12.0), &asked, 1);
+    let place = curves[0].path.segments().nth(3).unwrap().start();
+    let ray = view.ray_at(view.x_at(place.x), view.y_at(place.y));
+    let [outward, across, level] = view.axes();
+    let towards = outward * -ray.z + across * ray.ta + level * ray.tb;
+    let position = wide.camera().position;
+    let focus = position + towards * 30.0;
+    let text = format!(
+        "[camera]\nposition = [{:?}, {:?}, {:?}]\nfocus = [{:?}, {:?}, {:?}]\nfov = 1e-11\n\
+         [disk]\ninner = 3.0\nouter = 12.0\n[image]\nwidth = 96\nheight = 64\n",
+        position.x, position.y, position.z, focus.x, focus.y, focus.z
+    );
+    let scene = Scene::from_toml(&text).unwrap();
+    for curve in contours(&View::new(&scene), (3.0, 12.0), &asked, 1) {
+        assert!(curve.path.elements().len() < 10_000);
+    }
 }
 
 #[test]

@@ -39,7 +39,7 @@ pub(super) enum Format {
 impl Format {
     /// The extensions of all formats, in words.
     pub(super) const EXTENSIONS: &str =
-        ".png, .exr, .npz, .svg, .y4m, .raw, .mp4, .mov, .mkv or .webm";
+        ".png, .exr, .npz, .y4m, .raw, .mp4, .mov, .mkv, .webm or .svg";
 
     /// The extensions of the formats with a file for each frame, in words.
     pub(super) const SEQUENCE_EXTENSIONS: &str = ".png, .exr or .npz";

@@ -196,9 +196,10 @@ fn render_writes_the_outline_of_a_frame() {
     assert_eq!(listing(here), ["disk.svg", "f_0012.svg"]);
 }
 
-/// Another program fills the outline as the mask, within its antialiasing. rsvg-convert's rasteriser, cairo, draws curves
-/// as lines that are right to 0.1 pixels, and counts 15 rows of a pixel. Here it draws them eight times as large, so that
-/// an edge may be off by (0.1 + 1/15)/8 of a pixel: 5.3 of 255, and twice as much where a pixel has two edges.
+/// Another program fills the outline as the mask, within its antialiasing. rsvg-convert's rasteriser, cairo, draws
+/// curves as lines that are right to 0.1 pixels, and counts 15 rows of a pixel. Here it draws them eight times as
+/// large, so that an edge may be off by (0.1 + 1/15)/8 of a pixel: 5.3 of 255, and twice as much where a pixel has two
+/// edges.
 #[test]
 fn an_outline_that_another_program_fills_is_the_mask() {
     const ZOOM: usize = 8;
