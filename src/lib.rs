@@ -66,6 +66,7 @@
 //! | [`light`] | redshift, flux, black bodies, colour: what a ray that meets the disk shows |
 //! | [`sky`] | what is behind the hole: a panorama, stars, and a grid |
 //! | [`render`] | [`Renderer`]: frames and batches of frames, as masks, in colour or as layers of data |
+//! | `figure` | curves of constant radius, redshift and flux as Bézier paths (feature `figure`) |
 //! | `chart` | speed against accuracy of every method, measured and drawn (feature `chart`) |
 //! | `cli` | the program `darkness` (feature `cli`, on by default) |
 //!
@@ -78,6 +79,8 @@
 pub mod chart;
 #[cfg(feature = "cli")]
 pub mod cli;
+#[cfg(feature = "figure")]
+pub mod figure;
 pub mod isoradial;
 pub mod light;
 pub mod orbit;

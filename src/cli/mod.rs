@@ -9,6 +9,7 @@ mod completions;
 mod destination;
 mod frame_range;
 mod interrupt;
+mod isoradials;
 mod job;
 mod man;
 mod method;
@@ -63,6 +64,7 @@ Examples:
   darkness render mine.toml
   darkness table fine                        the most accurate table
   printf 'u0,dudphi\\n0.03,0.1\\n' | darkness trace
+  darkness isoradials                        Luminet's figure: rings around the hole, as isoradials.svg
   darkness chart --quick                     speed against accuracy on this machine, as chart.svg
   darkness completions bash                  for zsh, fish, powershell too; darkness man: manual pages
 
@@ -75,6 +77,7 @@ enum Verb {
     Table(table::TableArgs),
     Trace(trace::TraceArgs),
     Scene(scene::SceneArgs),
+    Isoradials(isoradials::IsoradialsArgs),
     Chart(chart::ChartArgs),
     Job(job::JobArgs),
     // Needed once, and named at the end of the help.
@@ -105,6 +108,7 @@ pub fn run() -> ExitCode {
         Verb::Table(args) => table::run(&args, report),
         Verb::Trace(args) => trace::run(&args, report),
         Verb::Scene(args) => scene::run(&args),
+        Verb::Isoradials(args) => isoradials::run(&args, report),
         Verb::Chart(args) => chart::run(&args, report),
         Verb::Job(args) => job::run(&args, report),
         Verb::Completions(args) => completions::run(&args, Cli::command()),

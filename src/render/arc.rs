@@ -147,6 +147,25 @@ impl EdgeArc {
         first.abs().max(last.abs()) * length * length / 8.0
     }
 
+    /// Returns the arc's four Bézier points (x, y), in the direction in which the disk is on the left as seen in the
+    /// picture.
+    #[cfg(feature = "figure")]
+    pub(super) fn bezier(&self) -> [(f64, f64); 4] {
+        let third = (self.u.1 - self.u.0) / 3.0;
+        let end_slope = self.slope + 3.0 * third * (2.0 * self.c2 + 9.0 * third * self.c3);
+        let points = [
+            (self.u.0, self.v.0),
+            (self.u.0 + third, self.v.0 + third * self.slope),
+            (self.u.1 - third, self.v.1 - third * end_slope),
+            (self.u.1, self.v.1),
+        ];
+        let mut points = points.map(|(u, v)| if self.steep { (v, u) } else { (u, v) });
+        if self.weight < 0 {
+            points.reverse();
+        }
+        points
+    }
+
     /// The least and the greatest y.
     pub(super) fn rows(&self) -> (f64, f64) {
         if self.steep { self.u } else { self.hull }

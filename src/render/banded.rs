@@ -18,7 +18,7 @@ const HARD: f64 = 1.0 / 200.0;
 
 /// Every pixel is evaluated by itself, with hard edges, if rounding moves an edge by more than this, in pixels, or if
 /// the outline takes too many arcs. An outline has no meaning below the rounding of its curves.
-const COARSE: f64 = 0.1;
+pub(super) const COARSE: f64 = 0.1;
 
 /// An outline, sorted into bands.
 #[derive(Debug, Default)]
@@ -194,7 +194,7 @@ fn left(path: &OutlinePath, view: &View, sees: impl Fn((f64, f64)) -> bool) -> i
 }
 
 /// Returns about how far a place is from the path: along rows for steep arcs, along columns for flat ones.
-fn distance(path: &OutlinePath, (x, y): (f64, f64)) -> f64 {
+pub(super) fn distance(path: &OutlinePath, (x, y): (f64, f64)) -> f64 {
     path.arcs.iter().fold(f64::INFINITY, |least, arc| {
         let (u, v) = if arc.steep { (y, x) } else { (x, y) };
         let nearest = u.clamp(arc.u.0, arc.u.1);

@@ -135,7 +135,7 @@ fn rows_of_band(view: &View) -> usize {
 }
 
 /// How much more of the disk there is on the inner side of a boundary than on the other.
-fn covers(boundary: &Boundary) -> i32 {
+pub(super) fn covers(boundary: &Boundary) -> i32 {
     i32::from(boundary.above.is_some()) - i32::from(boundary.below.is_some())
 }
 

@@ -41,6 +41,8 @@ mod ink;
 pub mod mask;
 mod mixture;
 pub mod needs;
+#[cfg(feature = "figure")]
+mod outline;
 mod painter;
 mod patch;
 mod path;
@@ -57,7 +59,11 @@ mod sky;
 mod tiles;
 
 pub use error::RenderError;
+#[cfg(feature = "figure")]
+pub use outline::disk_outline;
 pub use planes::{Form, FrameMemory, Pixels, Plane};
+#[cfg(feature = "figure")]
+pub(crate) use projection::picture_matrix;
 pub use renderer::Renderer;
 pub use scene_frame::FrameReport;
 

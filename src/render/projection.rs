@@ -126,22 +126,28 @@ pub(super) struct Projection<'a> {
     pub(super) height: f64,
 }
 
+/// Returns M of the [module's page](self), row by row.
+pub(crate) fn picture_matrix(view: &View) -> [[f64; 3]; 3] {
+    let (width, height) = (f64::from(view.width()), f64::from(view.height()));
+    let (z, ta, tb) = (view.z(), view.ta(), view.tb());
+    let parts = |part: fn(Affine) -> f64| [part(z), part(ta), part(tb)];
+    let w = parts(|affine| affine.at_centre);
+    let right = parts(|affine| affine.per_x);
+    let up = parts(|affine| affine.per_y);
+    let side = view.pixel_side();
+    [
+        w,
+        core::array::from_fn(|i| right[i] / side + 0.5 * width * w[i]),
+        core::array::from_fn(|i| 0.5 * height * w[i] - up[i] / side),
+    ]
+}
+
 impl<'a> Projection<'a> {
     pub(super) fn new(view: &View, curves: &'a Isoradials) -> Self {
         let (width, height) = (f64::from(view.width()), f64::from(view.height()));
-        let (z, ta, tb) = (view.z(), view.ta(), view.tb());
-        let parts = |part: fn(Affine) -> f64| [part(z), part(ta), part(tb)];
-        let w = parts(|affine| affine.at_centre);
-        let right = parts(|affine| affine.per_x);
-        let up = parts(|affine| affine.per_y);
-        let side = view.pixel_side();
         Self {
             curves,
-            matrix: [
-                w,
-                core::array::from_fn(|i| right[i] / side + 0.5 * width * w[i]),
-                core::array::from_fn(|i| 0.5 * height * w[i] - up[i] / side),
-            ],
+            matrix: picture_matrix(view),
             n: view.n_p().abs(),
             plane_slope: view.plane_slope(),
             d: view.plane_slope().abs(),

@@ -27,6 +27,7 @@ mod coverage;
 mod coverage_frames;
 mod coverage_rings;
 mod extreme_cameras;
+mod figure;
 mod grazing;
 mod gyoto;
 mod light;

@@ -57,9 +57,10 @@ pub(in crate::cli) struct RenderArgs {
     /// The vertical field of view [default: the scene's]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     pub(super) fov: Option<f64>,
-    /// The output: a .png, .exr or .npz file, or - for the standard output. For an animation: such a name with #### or
-    /// %04d in place of the number, or a film: .y4m, .raw, or by ffmpeg .mp4, .mov, .mkv or .webm [default: the scene's
-    /// name with .png, with .exr if it names layers, with _#### for an animation, in the current folder]
+    /// The output: a .png, .exr or .npz file, a .svg file for the outline of the disk alone, or - for the standard
+    /// output. For an animation: such a name with #### or %04d in place of the number, or a film: .y4m, .raw, or by
+    /// ffmpeg .mp4, .mov, .mkv or .webm [default: the scene's name with .png, with .exr if it names layers, with _####
+    /// for an animation, in the current folder]
     #[arg(short, long, value_name = "OUT")]
     pub(super) output: Option<PathBuf>,
     /// The format, where the extension does not name it

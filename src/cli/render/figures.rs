@@ -177,7 +177,8 @@ impl Figures {
             line(
                 "edge error",
                 format!(
-                    "at most {total} pixels: {between} between nodes, {angles} from the angles, {rounding} from rounding"
+                    "at most {total} pixels: {between} between nodes, {angles} from the angles, \
+                     {rounding} from rounding"
                 ),
             );
         } else {
@@ -195,7 +196,8 @@ impl Figures {
             line(
                 "escape",
                 format!(
-                    "{octaves} octaves towards the critical ray: {nodes} nodes, {bytes} bytes, directions right to {error:.1e} rad"
+                    "{octaves} octaves towards the critical ray: {nodes} nodes, {bytes} bytes, \
+                     directions right to {error:.1e} rad"
                 ),
             );
         }

@@ -40,6 +40,12 @@ pub(super) fn of(animation: &Animation, format: Format) -> anyhow::Result<Form> 
     if format.has_layers() {
         return Ok(Form::Layers(with_defaults(layers, format, in_colour)));
     }
+    if format == Format::Svg {
+        return Err(misuse(
+            "a .svg file holds the outline of one frame's disk and no pixels; write it with `darkness render -o`, one \
+             frame at a time",
+        ));
+    }
     if !layers.is_empty() {
         return Err(misuse(format!(
             ".{name} files hold no layers of data; name a .exr or .npz file with -o, or leave out the layers"

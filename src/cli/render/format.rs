@@ -17,6 +17,8 @@ pub(super) enum Format {
     Exr,
     /// A NumPy archive for each frame: an array for each layer
     Npz,
+    /// The outline of a frame's disk as Bézier paths, white on black: right to 0.01 pixels of the picture
+    Svg,
     /// A film of all frames, YUV4MPEG2: 4:2:0, BT.709, limited range
     Y4m,
     /// A film of masks, YUV4MPEG2: grey, full range, which many encoders refuse or mark as limited
@@ -36,7 +38,8 @@ pub(super) enum Format {
 
 impl Format {
     /// The extensions of all formats, in words.
-    pub(super) const EXTENSIONS: &str = ".png, .exr, .npz, .y4m, .raw, .mp4, .mov, .mkv or .webm";
+    pub(super) const EXTENSIONS: &str =
+        ".png, .exr, .npz, .y4m, .raw, .mp4, .mov, .mkv, .webm or .svg";
 
     /// The extensions of the formats with a file for each frame, in words.
     pub(super) const SEQUENCE_EXTENSIONS: &str = ".png, .exr or .npz";
@@ -67,6 +70,7 @@ impl Format {
             Self::Png => "png",
             Self::Exr => "exr",
             Self::Npz => "npz",
+            Self::Svg => "svg",
             Self::Y4m | Self::Y4mGray => "y4m",
             Self::Raw => "raw",
             Self::Mp4 => "mp4",
@@ -78,7 +82,7 @@ impl Format {
 
     /// Whether all frames go into one file.
     pub(super) fn is_film(self) -> bool {
-        !matches!(self, Self::Png | Self::Exr | Self::Npz)
+        !matches!(self, Self::Png | Self::Exr | Self::Npz | Self::Svg)
     }
 
     /// Whether a file holds layers of data.

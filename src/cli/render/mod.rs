@@ -25,6 +25,7 @@ mod run_stats;
 mod sequence;
 mod sky;
 mod summary;
+mod svg;
 mod y4m;
 mod yuv;
 
@@ -68,6 +69,9 @@ fn render(args: &RenderArgs, report: Report) -> anyhow::Result<()> {
     }
     if args.explain {
         return explain::run(args, &animation, &frames, report);
+    }
+    if svg::is_asked(args) {
+        return svg::run(args, &animation, &frames, report);
     }
     let (plan, checked) = Plan::new(args, &animation, &frames)?;
     if args.dry_run {

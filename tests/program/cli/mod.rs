@@ -2,6 +2,7 @@
 //! answers than the library.
 
 mod camera;
+mod isoradials;
 mod render;
 mod scene;
 mod table;
