@@ -10,10 +10,10 @@ use clap::{Args, ValueEnum};
 use super::destination::{Destination, has_extension, onto_input, unsupported_extension};
 use super::misuse::misuse;
 use super::progress::{Report, count, duration, warn};
+use super::radius::radius;
 use super::threads::start_threads;
 use super::writable::{self, OUTPUT};
 use crate::figure::{Level, Paper, Quantity, contours, svg, write_csv};
-use crate::orbit::{MIN_U, OrbitError};
 use crate::scene::{Animation, ImageSize, Override, Scene, View};
 
 /// The radii that are drawn where nothing is asked for: Luminet's 6M, 10M, 20M and 30M.
@@ -102,18 +102,6 @@ impl FigureFormat {
             Self::Svg => "svg",
             Self::Csv => "csv",
         }
-    }
-}
-
-fn radius(text: &str) -> Result<f64, String> {
-    let radius: f64 = text
-        .trim()
-        .parse()
-        .map_err(|_| "a radius is a number above 1, in Schwarzschild radii".to_owned())?;
-    if radius > 1.0 && radius <= 1.0 / MIN_U {
-        Ok(radius)
-    } else {
-        Err(OrbitError::Radius { radius }.to_string())
     }
 }
 

@@ -16,6 +16,7 @@ mod method;
 mod misuse;
 mod pattern;
 mod progress;
+mod radius;
 pub mod rays;
 mod remedy;
 mod render;

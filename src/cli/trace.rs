@@ -14,11 +14,12 @@ use given::{PixelIndex, pixel_index, rays_from, rays_of_pixels};
 
 use super::method::{DEFAULT_TABLE, Method, MethodArgs};
 use super::progress::{Report, count, warn};
+use super::radius::radius;
 use super::rays::{ListedRay, RayReader, RaysError};
 use super::stdio::StdoutError;
 use super::threads::start_threads;
+use crate::orbit::OrbitError;
 use crate::orbit::exact::Exact;
-use crate::orbit::{MIN_U, OrbitError};
 
 /// Follow single rays: what happens to them, or their paths, as CSV
 ///
@@ -122,16 +123,6 @@ Examples:
   darkness trace --from 30 --angle 4,5,6 --method exact
   darkness trace --camera classic --pixel 960,400 --paths 200
   printf 'id,r0,b\\nA,30,2.7\\n' | darkness trace --radius 3,12";
-
-fn radius(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(radius) if radius > 1.0 && radius <= 1.0 / MIN_U => Ok(radius),
-        _ => Err(
-            "a radius is a number above 1, the horizon, and at most 1e100, in Schwarzschild radii"
-                .into(),
-        ),
-    }
-}
 
 /// How many of the refused rays are reported one by one.
 const MOST_REPORTED: u64 = 100;

@@ -22,6 +22,7 @@ mod long_runs;
 mod outputs;
 mod pages;
 mod readers;
+mod run_messages;
 mod sharing;
 mod skies;
 mod sky_faults;

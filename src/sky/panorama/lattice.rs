@@ -27,8 +27,8 @@ const BLOCKS: usize = COLUMNS / BLOCK;
 
 /// The greatest squared length of a footprint, in texels of its level: corners are then up to 2.1 texels apart.
 const LONGEST: f32 = 9.0;
-/// A level is taken from this share of the size on at which it has the footprint's own width. It is then up to a fifth
-/// too wide, which changes less than corners that are further apart.
+/// A level is taken from this share of the size on at which it has the footprint's second moments. It is then wider
+/// than the footprint by 15 % at most, which changes a mean less than corners that are farther apart.
 const EARLIER: f32 = 0.75;
 /// A footprint is nearly a square where the squares of its axes differ by less than this share of their sum, squared.
 const SQUARE: f32 = 0.25;
