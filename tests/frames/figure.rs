@@ -4,7 +4,9 @@
 use std::f64::consts::{PI, TAU};
 
 use darkness::Ray;
-use darkness::figure::kurbo::{BezPath, Line, ParamCurve, PathEl, Point, Shape, Vec2};
+use darkness::figure::kurbo::{
+    BezPath, Line, ParamCurve, ParamCurveNearest, PathEl, Point, Shape, Vec2,
+};
 use darkness::figure::{Contour, Level, Quantity, TOLERANCE, contours, write_csv};
 use darkness::isoradial::{CurveSpec, Isoradials};
 use darkness::light::{SightGeometry, flux};
@@ -14,6 +16,7 @@ use darkness::render::disk_outline;
 use darkness::render::mask::render_every_pixel;
 use darkness::scene::{Scene, View, builtins};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 fn levels(quantity: Quantity, values: &[f64]) -> Vec<Level> {
     let level = |&value| Level { quantity, value };
@@ -330,9 +333,11 @@ fn check_outline(name: &str, scene: &Scene) -> Result<(), TestCaseError> {
     for (i, &pixel) in mask.iter().enumerate() {
         let centre = Point::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
         if outline.winding(centre) != -i32::from(pixel > 0) {
-            let near = [(-0.01, 0.0), (0.01, 0.0), (0.0, -0.01), (0.0, 0.01)];
-            let near = near.map(|(x, y)| outline.winding(centre + Vec2::new(x, y)));
-            wrong += usize::from(near.iter().all(|&winding| winding == near[0]));
+            // Its distance from the edges themselves: a ring may be thinner than the tolerance.
+            let distance2 = outline
+                .segments()
+                .map(|segment| segment.nearest(centre, 1e-9).distance_sq);
+            wrong += usize::from(distance2.fold(f64::INFINITY, f64::min) > 0.01 * 0.01);
         }
     }
     prop_assert_eq!(wrong, 0, "{}", name);
@@ -351,7 +356,13 @@ fn outlines_enclose_the_masks_of_built_in_scenes() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(100))]
+    // The same scenes in every run.
+    #![proptest_config(ProptestConfig {
+        cases: 100,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(1),
+        ..ProptestConfig::default()
+    })]
 
     /// Cameras everywhere: curves that leave the picture or pass behind the camera.
     #[test]
