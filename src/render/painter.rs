@@ -72,6 +72,7 @@ impl<I: Ink<N>, const N: usize> Painter<'_, I, N> {
     /// Fits a patch to the pixels of a rectangle.
     fn fit(&self, order: u32, bounds: Rectangle, patch: &mut Patch<N>) -> Result<(), Misfit> {
         let (shader, ink) = (self.shader, self.ink);
+        bounds.check_angle(shader.view)?;
         let corners = bounds.centres(self.top);
         let angle = ink.angle();
         let mut first = None;

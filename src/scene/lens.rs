@@ -128,6 +128,16 @@ impl Lens {
         }
     }
 
+    /// Returns how much narrower a pixel about (X, Y) is across than along, as an angle: a fisheye stretches what it
+    /// shows around its centre, an equirectangular picture along its rows. Flat pictures count as 1: they stretch most
+    /// where they are widest, by less than others.
+    pub(crate) fn narrowing(&self, x: f64, y: f64) -> f64 {
+        match self.projection {
+            Projection::Perspective => 1.0,
+            Projection::Fisheye | Projection::Equirectangular => self.solid_angle(x, y),
+        }
+    }
+
     /// Returns where a direction of any length is seen, (X, Y); `None` behind a flat picture.
     #[inline(always)]
     pub(crate) fn point(&self, [ahead, right, up]: Direction) -> Option<(f64, f64)> {

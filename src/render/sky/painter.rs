@@ -147,6 +147,7 @@ impl Tiled<NODES> for SkyTiles<'_, '_, '_> {
 
     fn fit(&mut self, bounds: Rectangle, patch: &mut Patch<NODES>) -> Result<(), Misfit> {
         let shader = &self.painter.shader;
+        bounds.check_angle(shader.view)?;
         let corners = bounds.centres(self.top);
         let middle = (
             0.5 * (corners.0.0 + corners.1.0),

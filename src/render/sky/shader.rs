@@ -70,6 +70,11 @@ impl<'a> SkyShader<'a> {
         }
     }
 
+    /// The view whose rays these are.
+    pub(in crate::render) fn view(&self) -> &'a View {
+        self.view
+    }
+
     /// Returns a direction of the sky's axes in those of the scene.
     pub(in crate::render) fn in_scene(&self, direction: DVec3) -> DVec3 {
         self.orientation.from_sky(direction)

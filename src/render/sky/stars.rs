@@ -352,8 +352,8 @@ impl<'a> ImagePlaces<'a> {
         if lens.projection() == Projection::Perspective {
             return push((column, row), 1.0);
         }
-        let share = lens.solid_angle(self.view.x_at(column), self.view.y_at(row));
-        let stretch = (1.0 / share).min(width);
+        let narrowing = lens.narrowing(self.view.x_at(column), self.view.y_at(row));
+        let stretch = (1.0 / narrowing).min(width);
         // A little less: a stretch of 1 may be rounded.
         let count = (stretch - 1e-6).ceil().max(1.0);
         let apart = (stretch - 1.0).max(0.0) / (count - 1.0).max(1.0);
