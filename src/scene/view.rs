@@ -45,7 +45,7 @@ pub struct PixelRay {
 }
 
 impl PixelRay {
-    /// The ray with parts that are linear in a direction's: z, t_a and t_b, each by its factors.
+    /// The ray with parts that are linear in a direction's: z, `t_a` and `t_b`, each by its factors.
     #[inline(always)]
     fn of([z, ta, tb]: [Direction; 3], direction: Direction) -> Self {
         Self {
@@ -74,7 +74,7 @@ pub struct View {
     outward: DVec3,
     across: DVec3,
     level: DVec3,
-    /// The factors of a direction's parts ahead, right and up in z, t_a and t_b.
+    /// The factors of a direction's parts ahead, right and up in z, `t_a` and `t_b`.
     parts: [Direction; 3],
     lens: Lens,
 }
