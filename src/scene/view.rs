@@ -22,6 +22,7 @@
 use glam::DVec3;
 
 use super::checked::Scene;
+use super::values::Region;
 use super::vector::{cosine, direction, norm, scaled, unit_cross};
 
 /// n and p̂ are parallel where `|n × p̂|` is at most this: the rest is the rounding of the cross product and of the
@@ -82,6 +83,8 @@ pub struct View {
     tb: Affine,
     width: u32,
     height: u32,
+    /// The part of the picture that is drawn.
+    region: Region,
     /// Half a pixel's side in X and Y, `tan(fov/2)/H`.
     half_pixel: f64,
 }
@@ -159,6 +162,7 @@ impl View {
             tb: across(b),
             width: image.width,
             height: image.height,
+            region: scene.region(),
             half_pixel: libm::tan(camera.fov_degrees.to_radians() / 2.0) / f64::from(image.height),
         }
     }
@@ -231,14 +235,20 @@ impl View {
         self.tb
     }
 
-    /// The picture's width, in pixels.
+    /// The whole picture's width, in pixels.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// The picture's height, in pixels.
+    /// The whole picture's height, in pixels.
     pub fn height(&self) -> u32 {
         self.height
+    }
+
+    /// The part of the picture that is drawn. Places in the picture are counted from the whole picture's left and top
+    /// all the same.
+    pub fn region(&self) -> Region {
+        self.region
     }
 
     /// The side of a pixel in X and Y.
