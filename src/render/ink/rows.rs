@@ -30,8 +30,10 @@ impl<'b, T: Copy + Default> Samples<'b, T> {
         (0..TileRow::count(&view)).map(move |number| {
             let band = TileRow::new(&view, number);
             let shown = band.shown(&view);
+            // The last row ends with its last pixel.
             let samples = stride.saturating_mul(shown.rows.1 - shown.rows.0);
-            let (drawn, after) = core::mem::take(&mut rest).split_at_mut(samples.min(rest.len()));
+            let samples = samples.min(rest.len());
+            let (drawn, after) = core::mem::take(&mut rest).split_at_mut(samples);
             rest = after;
             let is_whole = shown.columns == (0, band.width) && shown.rows == (0, band.rows);
             let width = channels * band.width;
