@@ -27,7 +27,16 @@ pub(super) fn animation(args: &RenderArgs) -> anyhow::Result<Animation> {
         }
     }
     let animation = Animation::load_with(&args.scene, &overrides(args));
-    let animation = animation.map_err(|error| with_hint(args, error))?;
+    let animation = match animation {
+        Ok(animation) => animation,
+        Err(error) => {
+            // A size that no scene may have is too large for memory first.
+            if let (Some(size), None) = (args.size, args.crop) {
+                memory::check(args.max_memory, size, Form::Grey8)?;
+            }
+            return Err(with_hint(args, error));
+        }
+    };
     if args.exposure.is_some() && !animation.shows_colour() {
         return Err(misuse(
             "--exposure changes light, and this scene has none; give it a [disk.light] or a [sky], or leave \
