@@ -6,10 +6,12 @@ mod interleaved;
 
 use core::cell::RefCell;
 
+use darkness::Renderer;
 use darkness::isoradial::{CurveSpec, Isoradials};
 use darkness::orbit::exact::Exact;
 use darkness::render::frame::{Threads, Workspace};
-use darkness::scene::{Scene, View, builtins};
+use darkness::render::{Form, FrameMemory};
+use darkness::scene::{Region, Scene, View, builtins};
 use darkness::table::{Lookup, Spec, Table};
 use interleaved::{Contender, compare};
 
@@ -32,7 +34,52 @@ fn main() {
         if let Ok(scene) = large {
             frames_of("classic, 7680 × 4320", &scene, &lookup, 21);
         }
+        crop_of_a_large_picture(&table);
     });
+}
+
+/// A part of a picture of 65,536 × 65,536 pixels, on the disk's edge. A renderer keeps the curves, and a light's map.
+fn crop_of_a_large_picture(table: &Table) {
+    let part = Region {
+        left: 12_768,
+        top: 17_920,
+        width: 64,
+        height: 64,
+    };
+    let scene = |name| {
+        let scene = Scene::builtin(name).and_then(|scene| scene.with_size(65_536, 65_536));
+        scene.and_then(|scene| scene.with_crop(Some(part)))
+    };
+    let (Ok(mask), Ok(lit)) = (scene("classic"), scene("lit")) else {
+        return;
+    };
+    let hard_mask = mask.clone().with_antialias(false);
+    let draw = |scene: Scene, form: Form| {
+        let (mut renderer, mut memory) = (Renderer::new(table), FrameMemory::new(form));
+        move || {
+            let drawn = renderer.draw(&scene, &mut memory);
+            drawn.map_or(0.0, |report| report.error.total())
+        }
+    };
+    compare(
+        "64 × 64 pixels of 65,536 × 65,536, curves given",
+        1,
+        51,
+        &mut [
+            Contender {
+                name: "hard edges",
+                run: Box::new(draw(hard_mask, Form::Grey8)),
+            },
+            Contender {
+                name: "smooth edges",
+                run: Box::new(draw(mask, Form::Grey8)),
+            },
+            Contender {
+                name: "colour",
+                run: Box::new(draw(lit, Form::Rgb8)),
+            },
+        ],
+    );
 }
 
 fn frames_of(name: &str, scene: &Scene, lookup: &Lookup<'_>, rounds: usize) {

@@ -2,6 +2,7 @@
 //! answers than the library.
 
 mod camera;
+mod crops;
 mod isoradials;
 mod render;
 mod scene;
