@@ -1,6 +1,7 @@
 //! Guards against crops that differ from the whole picture, in any form and by any method.
 
-use std::sync::Arc;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
 
 use darkness::Renderer;
 use darkness::orbit::exact::Exact;
@@ -273,6 +274,40 @@ fn crops_go_into_a_callers_buffer() {
         }
     }
     assert!(renderer.render_rgb_into(&scene, &mut pixels, 269).is_err());
+}
+
+/// Frames of a batch, drawn side by side, are crops of the whole frames.
+#[test]
+fn crops_of_a_batch_are_parts_of_its_frames() {
+    let whole = Animation::load("lit-orbit")
+        .unwrap()
+        .with_size(150, 50)
+        .unwrap();
+    let part = Region {
+        left: 20,
+        top: 9,
+        width: 115,
+        height: 30,
+    };
+    let cropped = whole.clone().with_crop(Some(part)).unwrap();
+    assert_eq!((cropped.region(), cropped.image()), (part, whole.image()));
+    let frames = |animation: &Animation| {
+        let pictures = Mutex::new(BTreeMap::new());
+        let renderer = Renderer::new(table("standard"));
+        let drawn = renderer.render_frames(animation, Form::Rgb8, 1..=20, |frame| {
+            let (pixels, _) = frame.pixels.map_err(|error| error.to_string())?;
+            let picture = Picture::new(pixels, animation.size());
+            pictures.lock().unwrap().insert(frame.number, picture);
+            Ok::<(), String>(())
+        });
+        drawn.unwrap();
+        pictures.into_inner().unwrap()
+    };
+    let (whole, cropped) = (frames(&whole), frames(&cropped));
+    assert_eq!(cropped.len(), 20);
+    for (number, picture) in cropped {
+        assert!(picture == whole[&number].part(part), "{number}");
+    }
 }
 
 /// Crops that are drawn ray by ray.
