@@ -133,6 +133,7 @@ impl<'a> ShadedFrame<'a> {
             scratch.darken(&painter, sky.as_ref());
             ink.finish(&mut memory, shader, band);
             painter.clear_beyond_the_rim(&mut memory);
+            ink.hand_over(&mut memory);
         });
     }
 

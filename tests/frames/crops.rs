@@ -9,7 +9,7 @@ use darkness::render::batch::{Frames, RayByRay};
 use darkness::render::frame::Workspace;
 use darkness::render::{Form, FrameMemory, Pixels};
 use darkness::scene::{
-    Animation, ImageSize, Layer, Light, Region, Scene, Sky, SkyFile, StarSource, Stars,
+    Animation, ImageSize, Layer, Light, Projection, Region, Scene, Sky, SkyFile, StarSource, Stars,
 };
 use darkness::sky::{Panorama, SkySource, StarField};
 use proptest::prelude::Strategy;
@@ -19,6 +19,7 @@ use proptest::test_runner::TestRunner;
 use crate::any_scene::any_scene;
 use crate::lit::layers_of;
 use crate::noise::Random;
+use crate::projections::seen_by;
 use crate::tables::table;
 
 /// A frame's pixels: the bytes of each, row by row; of layers one pixel after the other has all its numbers.
@@ -125,6 +126,12 @@ fn any_scenes(count: usize) -> impl Iterator<Item = (Scene, Option<Arc<SkySource
         let scene = scene
             .with_size(width * (1 + number as u32 % 3), height)
             .unwrap();
+        let scene = match number % 7 {
+            4 => seen_by(&scene, Projection::Fisheye, 360.0, height),
+            5 => seen_by(&scene, Projection::Fisheye, 150.0, height),
+            6 => seen_by(&scene, Projection::Equirectangular, 180.0, height),
+            _ => scene,
+        };
         let scene = scene.with_antialias(number % 4 != 3);
         let light = match number % 3 {
             0 => None,
@@ -315,7 +322,10 @@ fn crops_of_a_batch_are_parts_of_its_frames() {
 fn crops_have_the_whole_pictures_bytes_ray_by_ray() {
     let mut random = Random(5);
     for (scene, source) in any_scenes(10) {
-        let scene = scene.with_size(140, 40).unwrap();
+        let scene = match scene.camera().projection {
+            Projection::Equirectangular => scene.with_size(140, 70).unwrap(),
+            _ => scene.with_size(140, 40).unwrap(),
+        };
         for form in forms(&scene) {
             let drawn = |scene: &Scene| {
                 let still = Animation::from_toml(&scene.to_toml()).unwrap();

@@ -330,6 +330,9 @@ impl Ink<NODES> for Data<'_> {
                 }
             }
         }
+    }
+
+    fn hand_over(&self, band: &mut Self::Band<'_>) {
         band.hand_over();
     }
 

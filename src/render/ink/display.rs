@@ -8,7 +8,7 @@ use crate::light::DisplayTransform;
 use crate::render::mixture::Mixture;
 use crate::render::patch::{Patch, PatchFit};
 use crate::render::shader::{PlaceRay, Shader};
-use crate::render::tiles::{TILE, TileRow};
+use crate::render::tiles::TILE;
 
 /// Nodes a side of a patch.
 const NODES: usize = 7;
@@ -97,7 +97,7 @@ impl<T: Code> Ink<NODES> for Display<'_, T> {
         }
     }
 
-    fn finish(&self, band: &mut Self::Band<'_>, _: &Shader<'_>, _: TileRow) {
+    fn hand_over(&self, band: &mut Self::Band<'_>) {
         band.hand_over();
     }
 

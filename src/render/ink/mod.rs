@@ -69,8 +69,13 @@ pub(super) trait Ink<const N: usize>: Sync {
         let _ = (band, sky, place, runs);
     }
 
-    /// Adds to a band what is seen beside the disk, and hands over the pixels that are drawn.
-    fn finish(&self, band: &mut Self::Band<'_>, shader: &Shader<'_>, place: TileRow);
+    /// Adds to a band what is seen beside the disk.
+    fn finish(&self, band: &mut Self::Band<'_>, shader: &Shader<'_>, place: TileRow) {
+        let _ = (band, shader, place);
+    }
+
+    /// Hands over the pixels of a finished band that are drawn.
+    fn hand_over(&self, band: &mut Self::Band<'_>);
 
     /// What fits patches.
     fn fit(&self) -> &PatchFit<N>;
