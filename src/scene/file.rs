@@ -336,6 +336,7 @@ impl SceneFile {
         self.sky.as_deref().map_or(Ok(()), validate::sky)?;
         let settings =
             validate::image(image.width, image.height, image.antialias, image.tolerance)?;
+        validate::shape(self.camera.projection, settings.size)?;
         validate::exposure("image.exposure", image.exposure)?;
         validate::layers(image.layers, light, self.sky.is_some())?;
         let crop = image.crop.map(|part| validate::crop(part, settings.size));
