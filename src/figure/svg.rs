@@ -19,9 +19,9 @@ pub enum Paper<'a> {
     Png(&'a [u8]),
 }
 
-/// Returns curves in the drawn part of a scene's picture as an SVG document, one `path` each. Those of the direct image are solid, those of higher
-/// orders dashed. The `class` of a path names its quantity and whether it is `direct` or a `ghost`. Its `title` tells
-/// its level and order.
+/// Returns curves in the drawn part of a scene's picture as an SVG document, one `path` each. Those of the direct image
+/// are solid, those of higher orders dashed. The `class` of a path names its quantity and whether it is `direct` or a
+/// `ghost`. Its `title` tells its level and order.
 pub fn svg(contours: &[Contour], scene: &Scene, paper: Paper<'_>) -> String {
     let size = scene.image();
     let colours = match paper {

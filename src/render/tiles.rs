@@ -1,7 +1,8 @@
 //! The tiles of a band: rectangles of pixels whose quantities are polynomials, and their parts where these do not do.
 //!
 //! Tiles are those of the whole picture, whichever part of it is drawn: a polynomial depends on all the pixels of its
-//! tile that it is for. So a part of a picture is drawn as the tiles that it touches, and has the whole picture's pixels.
+//! tile that it is for. So a part of a picture is drawn as the tiles that it touches, and has the whole picture's
+//! pixels.
 
 use super::patch::{Axis, Misfit, Patch};
 use crate::scene::{Projection, Region, View};

@@ -61,8 +61,8 @@ impl Colours {
         }
     }
 
-    /// Returns the linear light of `count` pixels of a row from their amplitude, the given quantity of a patch: its mean
-    /// over `parts` places a side of each. The centre of the first one is at a place of the picture.
+    /// Returns the linear light of `count` pixels of a row from their amplitude, the given quantity of a patch: its
+    /// mean over `parts` places a side of each. The centre of the first one is at a place of the picture.
     pub(super) fn of_row<const N: usize>(
         &self,
         (patch, quantity): (&Patch<N>, usize),
