@@ -12,6 +12,7 @@
 //! focus    = [0.0, 0.0, 0.0]         # default: the hole
 //! up       = [0.0, 0.0, 1.0]         # default: +z; beside angles, where the inclination falls
 //! roll     = 0.0                     # default; degrees; positive turns the picture's content clockwise
+//! projection = "perspective"         # default; "fisheye" or "equirectangular": see [`Projection`]
 //! fov      = 30.0                    # default; vertical field of view, degrees, 0 < fov < 180
 //! # or, in its place: fov_horizontal = 51.0
 //!
