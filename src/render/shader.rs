@@ -216,7 +216,6 @@ impl<'a> Shader<'a> {
 /// Returns the nearest of the inverse radii between two. What is not a number becomes the first: seen from within the
 /// disk's plane, a sliver of the direct image may belong to a pixel whose own ray never meets the disk.
 #[inline]
-#[expect(clippy::manual_clamp, reason = "what is not a number becomes a bound")]
 fn within(u: f64, (outer, inner): (f64, f64)) -> f64 {
     u.max(outer).min(inner)
 }
