@@ -15,7 +15,7 @@ use super::{form, memory, options, sky};
 use crate::quotation::beginning;
 use crate::render::Form;
 use crate::render::needs::{Candidate, Needs};
-use crate::scene::{Animation, ImageSize, Scene, Sky, StarSource};
+use crate::scene::{Animation, ImageSize, Projection, Scene, Sky, StarSource};
 use crate::sky::SkySource;
 
 /// The most frames that are looked at.
@@ -96,6 +96,10 @@ fn picture(scene: &Scene) -> String {
             "{} × {} from column {} and row {} of {size}",
             part.width, part.height, part.left, part.top
         );
+    }
+    let projection = scene.camera().projection;
+    if projection != Projection::Perspective {
+        size = format!("{size}, {}", projection.name());
     }
     if scene.disk().is_none() {
         return size;

@@ -4,6 +4,7 @@
 mod camera;
 mod crops;
 mod isoradials;
+mod projections;
 mod render;
 mod scene;
 mod table;
