@@ -4,8 +4,8 @@
 
 use super::arc::EdgeArc;
 use super::cells::{Cells, ONE, fixed};
+use super::edge_map::EdgeMap;
 use super::path::OutlinePath;
-use super::projection::Projection;
 use crate::isoradial::{Boundary, Isoradials};
 use crate::scene::{Region, View};
 
@@ -60,17 +60,16 @@ impl BandedOutline {
     pub(super) fn trace(
         &mut self,
         half: &mut OutlinePath,
-        projection: &Projection<'_>,
+        map: &EdgeMap<'_>,
         smooth: bool,
         weight: impl Fn(&Boundary) -> i32 + Sync,
         on_all_threads: bool,
     ) {
         let tolerance = if smooth { SMOOTH } else { HARD };
-        let rounding = projection.curves.error().rounding;
+        let rounding = map.curves.error().rounding;
         self.doubt = 2.0 * (tolerance + rounding) + 2.0 / ONE as f64;
         self.smooth = smooth;
-        self.path
-            .draw(half, projection, tolerance, weight, on_all_threads);
+        self.path.draw(half, map, tolerance, weight, on_all_threads);
     }
 
     /// Whether the outline is more than rounding.

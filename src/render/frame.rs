@@ -8,9 +8,9 @@ use super::WHITE;
 use super::banded::{BandScratch, BandedOutline};
 use super::cells::{Cells, ONE};
 use super::centre::{fill_every_pixel, front};
+use super::edge_map::EdgeMap;
 use super::error::{RenderError, check_buffer};
 use super::path::OutlinePath;
-use super::projection::Projection;
 use super::shaded::ShadedWorkspace;
 use crate::isoradial::{Boundary, Isoradials};
 use crate::scene::{Region, View};
@@ -78,12 +78,12 @@ impl Workspace {
         stride: usize,
     ) -> Result<(), RenderError> {
         let needed = check_buffer(view, 1, pixels, stride)?;
-        let projection = Projection::new(view, curves);
+        let map = EdgeMap::new(view, curves);
         let count = threads.count();
         let part = view.region();
         let rows = rows_of_band(part);
         let outline = &mut self.outline;
-        outline.trace(&mut self.half, &projection, smooth, covers, count > 1);
+        outline.trace(&mut self.half, &map, smooth, covers, count > 1);
         if !outline.is_meaningful(curves) {
             fill_every_pixel(view, curves, &mut pixels[..needed], stride);
             return Ok(());

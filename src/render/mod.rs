@@ -29,7 +29,7 @@
 //!
 //! # Arcs
 //! `arc.rs` derives how far an arc may be off its edge, `path.rs` which parts of the outline are out of the picture,
-//! `cells.rs` how areas add up.
+//! `round.rs` how edges cross the seams of fisheyes and equirectangular pictures, `cells.rs` how areas add up.
 
 mod arc;
 mod banded;
@@ -39,6 +39,7 @@ mod centre;
 mod cover;
 pub mod coverage;
 mod cross;
+mod edge_map;
 mod error;
 mod flux_spline;
 pub mod frame;
@@ -53,7 +54,6 @@ mod patch;
 mod path;
 pub mod pixelwise;
 mod planes;
-mod projection;
 mod renderer;
 mod round;
 mod scene_frame;

@@ -8,11 +8,11 @@ use std::cell::{Cell, RefCell};
 
 use super::banded::{BandScratch, BandedOutline};
 use super::cells::{Cells, ONE};
+use super::edge_map::EdgeMap;
 use super::frame::{Threads, on_threads};
 use super::ink::{Ink, Part};
 use super::painter::{Painter, Partial};
 use super::path::OutlinePath;
-use super::projection::Projection;
 use super::shader::Shader;
 use super::sky::{FrameSky, StarImages};
 use super::tiles::{Run, TILE, TileRow, tiles_of};
@@ -140,7 +140,7 @@ impl<'a> ShadedFrame<'a> {
     /// Draws the outline of each order. Returns whether they are more than rounding.
     fn draw_outlines(&mut self, rows: usize) -> bool {
         let (view, curves) = (self.shader.view, self.shader.curves);
-        let projection = Projection::new(view, curves);
+        let map = EdgeMap::new(view, curves);
         let orders = curves.orders();
         let outlines = &mut self.workspace.outlines;
         outlines.resize_with(orders.len().max(outlines.len()), Default::default);
@@ -152,7 +152,7 @@ impl<'a> ShadedFrame<'a> {
             let weight = |boundary: &Boundary| {
                 i32::from(boundary.above == number) - i32::from(boundary.below == number)
             };
-            outline.trace(self.half, &projection, self.smooth, weight, on_all_threads);
+            outline.trace(self.half, &map, self.smooth, weight, on_all_threads);
             is_meaningful &= outline.is_meaningful(curves);
             let sees = |place| self.shader.front_at(place) == number;
             outline.sort(view, tiles_of(view), rows, sees);
