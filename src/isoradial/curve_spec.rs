@@ -12,6 +12,8 @@
 //! along a whole row. There a pixel is no angle at all. Where pixels are [`NARROWEST`] times narrower than in the centre
 //! or more, the tolerance is that of pixels so many times narrower.
 
+use core::f64::consts::PI;
+
 use super::ray_angles::{angle_between, angle_of};
 use super::ray_bounds::RayBounds;
 use crate::orbit::invariants::{critical_slope, three_u_minus_two};
@@ -56,14 +58,18 @@ impl CurveSpec {
                 let corner = libm::atan((x * x + y * y).sqrt());
                 (axis, corner, RayBounds::of_picture(view, axis, corner))
             }
-            // Y of the upper edge is half of the whole angle.
+            // Y of the upper edge is half of the whole angle. Nothing is seen beyond the rim, but the outline is followed
+            // to the picture's corners: where it ended within the picture its rows would have no sides.
             Projection::Fisheye => {
                 let narrowest = libm::acos(2.0 / NARROWEST - 1.0);
-                (axis, y.min(narrowest), RayBounds::of_picture(view, axis, y))
+                let corner = (x * x + y * y).sqrt().min(PI);
+                let window = RayBounds::of_picture(view, axis, corner);
+                (axis, y.min(narrowest), window)
             }
             Projection::Equirectangular => {
                 let height = libm::asin(view.parts()[0][2].abs().min(1.0));
-                (height, libm::acos(1.0 / NARROWEST), RayBounds::ALL)
+                let window = RayBounds::of_picture(view, axis, PI);
+                (height, libm::acos(1.0 / NARROWEST), window)
             }
         };
         Self {

@@ -155,15 +155,25 @@ impl Bands<'_> {
             let within = |column: u32| (column.saturating_sub(part.left) as usize).min(width);
             pixels[..within(from)].fill(T::default());
             pixels[within(to)..].fill(T::default());
+            let inner = self.view.inner_columns((top + row) as u32);
+            for column in (within(from)..within(inner.0)).chain(within(inner.1)..within(to)) {
+                pixels[column] = self.at_centre(column, top + row);
+            }
         });
         for &(column, row) in &scratch.doubtful {
             let (column, row) = (column as usize, row as usize);
-            let place = (
-                (part.left as usize + column) as f64 + 0.5,
-                (top + row) as f64 + 0.5,
-            );
-            let is_white = front(self.view, self.curves, place).is_some();
-            pixels[row * stride + column] = if is_white { T::WHITE } else { T::default() };
+            pixels[row * stride + column] = self.at_centre(column, top + row);
+        }
+    }
+
+    /// What the centre of a pixel sees: a column of the drawn part, and a row of the picture.
+    fn at_centre<T: MaskSample>(&self, column: usize, row: usize) -> T {
+        let left = self.view.region().left as usize;
+        let place = ((left + column) as f64 + 0.5, row as f64 + 0.5);
+        if front(self.view, self.curves, place).is_some() {
+            T::WHITE
+        } else {
+            T::default()
         }
     }
 }

@@ -17,7 +17,6 @@ use super::shader::Shader;
 use super::sky::{FrameSky, StarImages};
 use super::tiles::{Run, TILE, TileRow, tiles_of};
 use crate::isoradial::Boundary;
-use crate::scene::View;
 
 /// A band is a row of tiles.
 pub(super) const ROWS_OF_BAND: usize = TILE.1;
@@ -121,7 +120,7 @@ impl<'a> ShadedFrame<'a> {
                 for (row, orders) in scratch.orders.chunks_exact(band.width).enumerate() {
                     runs_of(orders, NONE, row, &mut scratch.free);
                 }
-                keep_seen(view, band, &mut scratch.free);
+                keep(&mut scratch.free, |row| band.seen_columns(view, row));
                 for shown in curves.orders() {
                     scratch.paint_order(shown.number(), &painter, &mut memory);
                 }
@@ -185,7 +184,9 @@ impl ShadedScratch {
             self.band.rows(|cells, row, left| {
                 collect(cells, row, left, *order, runs, partial);
             });
-            keep_seen(painter.shader.view, band, runs);
+            let view = painter.shader.view;
+            keep(runs, |row| band.inner_columns(view, row));
+            add_rim(painter, *order, runs);
             painter.paint_runs(*order, &self.runs, memory);
             if sky.is_some() {
                 self.covered.extend_from_slice(&self.runs);
@@ -195,12 +196,13 @@ impl ShadedScratch {
             self.covered.sort_unstable_by_key(|run| (run.row, run.from));
             let size = (band.width as u32, band.rows as u32);
             complement(&self.covered, size, &mut self.free);
-            keep_seen(painter.shader.view, band, &mut self.free);
+            let view = painter.shader.view;
+            keep(&mut self.free, |row| band.seen_columns(view, row));
             self.paint_sky(painter, sky, memory);
         }
         let view = painter.shader.view;
         self.partial.retain(|pixel| {
-            let (from, to) = band.seen_columns(view, pixel.row as usize);
+            let (from, to) = band.inner_columns(view, pixel.row as usize);
             (from..to).contains(&(pixel.column as usize))
         });
         let beside = |row: usize, column: usize| {
@@ -375,13 +377,33 @@ struct BandSky<'a> {
     stars: &'a StarImages,
 }
 
-/// Keeps of the runs of a band what the picture shows: nothing beyond the rim of a fisheye.
-fn keep_seen(view: &View, band: TileRow, runs: &mut Vec<Run>) {
+/// Keeps of runs what is within the columns of each row: beyond the rim of a fisheye is nothing.
+fn keep(runs: &mut Vec<Run>, columns: impl Fn(usize) -> (usize, usize)) {
     runs.retain_mut(|run| {
-        let (from, to) = band.seen_columns(view, run.row as usize);
+        let (from, to) = columns(run.row as usize);
         (run.from, run.to) = (run.from.max(from as u32), run.to.min(to as u32));
         run.from < run.to
     });
+}
+
+/// Adds to the runs of an order the pixels across a fisheye's rim whose centres see it, where no area counts.
+fn add_rim<I, const N: usize>(painter: &Painter<'_, I, N>, order: u32, runs: &mut Vec<Run>) {
+    let (view, band, count) = (painter.shader.view, painter.band, runs.len());
+    for row in 0..band.rows {
+        let (seen, inner) = (band.seen_columns(view, row), band.inner_columns(view, row));
+        for column in (seen.0..inner.0).chain(inner.1..seen.1) {
+            if painter.shader.front_at(band.centre(column, row)) == Some(order) {
+                runs.push(Run {
+                    row: row as u32,
+                    from: column as u32,
+                    to: column as u32 + 1,
+                });
+            }
+        }
+    }
+    if runs.len() > count {
+        runs.sort_unstable_by_key(|run| (run.row, run.from));
+    }
 }
 
 /// Collects the pixels of rows that are in no run; runs are sorted and do not overlap.

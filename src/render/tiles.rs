@@ -61,7 +61,15 @@ impl TileRow {
 
     /// The columns of it that show something in a row of it: none beyond the rim of a fisheye.
     pub(super) fn seen_columns(self, view: &View, row: usize) -> (usize, usize) {
-        let (from, to) = view.shown_columns((self.top + row) as u32);
+        self.within(view.shown_columns((self.top + row) as u32))
+    }
+
+    /// The columns of it in a row whose pixels' areas count: see [`View::inner_columns`].
+    pub(super) fn inner_columns(self, view: &View, row: usize) -> (usize, usize) {
+        self.within(view.inner_columns((self.top + row) as u32))
+    }
+
+    fn within(self, (from, to): (u32, u32)) -> (usize, usize) {
         let within = |column: u32| (column as usize).clamp(self.left, self.left + self.width);
         (within(from) - self.left, within(to) - self.left)
     }

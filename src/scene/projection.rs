@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 /// How directions become places in the picture.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(try_from = "String")]
 pub enum Projection {
     /// A flat picture: straight lines stay straight.
     #[default]
@@ -14,6 +14,20 @@ pub enum Projection {
     Fisheye,
     /// The whole sphere: longitude across, latitude down. The direction ahead is in the centre.
     Equirectangular,
+}
+
+impl TryFrom<String> for Projection {
+    type Error = String;
+
+    fn try_from(name: String) -> Result<Self, Self::Error> {
+        let all = [Self::Perspective, Self::Fisheye, Self::Equirectangular];
+        let named = all.into_iter().find(|projection| projection.name() == name);
+        named.ok_or_else(|| {
+            format!(
+                "there is no projection {name:?}; there are perspective, fisheye and equirectangular"
+            )
+        })
+    }
 }
 
 impl Projection {
@@ -73,6 +87,7 @@ mod tests {
     fn what_makes_no_sense_is_told() {
         for (camera, size, words) in [
             ("projection = \"dome\"", "", ["fisheye", "equirectangular"]),
+            ("projection = 5", "", ["`5`", "string"]),
             ("fov = 200", "", ["camera.fov", "fisheye"]),
             (
                 "projection = \"fisheye\"\nfov = 361",
@@ -92,12 +107,12 @@ mod tests {
             (
                 "projection = \"equirectangular\"\nfov = 90",
                 "width = 64\nheight = 32",
-                ["camera.fov", "whole sphere"],
+                ["field of view", "whole sphere"],
             ),
             (
                 "projection = \"equirectangular\"",
                 "width = 64\nheight = 33",
-                ["image.width", "66"],
+                ["image.width", "66x33"],
             ),
         ] {
             let error = scene(camera, size).expect_err(camera).to_string();

@@ -266,8 +266,8 @@ pub(super) fn shape(projection: Projection, size: ImageSize) -> Result<(), Scene
         "image.width",
         width,
         format_args!(
-            "an equirectangular picture is twice as wide as high, and image.height = {height}; write \
-             image.width = {}",
+            "an equirectangular picture is twice as wide as high, and image.height is {height}; its size may be \
+             {}x{height}",
             2 * u64::from(height)
         ),
     )

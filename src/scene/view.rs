@@ -20,6 +20,7 @@
 //!   an error of ε min(|F|, L)/L.
 //! * right and `true_up` are ⟂ V, so `right·P = right·F` and `right·p̂ = right·F/r`, small where F is near the hole.
 
+use core::f64::consts::PI;
 use core::ops::Mul;
 
 use glam::DVec3;
@@ -281,6 +282,30 @@ impl View {
             from += 1;
         }
         (from, width - from)
+    }
+
+    /// Returns those of the [shown columns](Self::shown_columns) whose pixels lie wholly within the rim, where that is one
+    /// direction: of a fisheye of 360 degrees. Beyond that direction the picture would begin again, so that of the pixels
+    /// across the rim no area counts. Elsewhere all shown columns are returned.
+    pub(crate) fn inner_columns(&self, row: u32) -> (u32, u32) {
+        let (mut from, to) = self.shown_columns(row);
+        let height = f64::from(self.height());
+        if self.lens.projection() != Projection::Fisheye
+            || (0.5 * height + 1.0) * self.pixel_side() < PI
+        {
+            return (from, to);
+        }
+        let row = f64::from(row);
+        let farther = if row + 0.5 < 0.5 * height {
+            row
+        } else {
+            row + 1.0
+        };
+        let middle = self.width().div_ceil(2);
+        while from < middle && !self.shows((from.into(), farther)) {
+            from += 1;
+        }
+        (from, (self.width() - from).max(from))
     }
 
     /// Returns a ray's direction, as long as the ray: its parts ahead of the camera, to its right and up. They are at

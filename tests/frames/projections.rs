@@ -36,6 +36,28 @@ pub(crate) fn seen_by(scene: &Scene, projection: Projection, fov: f64, height: u
     flat.with_camera(camera(projection, fov_degrees)).unwrap()
 }
 
+/// The same scene from a camera that looks in some direction, as a picture of another shape.
+fn looking(scene: &Scene, direction: Option<[f64; 3]>, widening: f64) -> Scene {
+    let mut camera = *scene.camera();
+    if let Some(direction) = direction {
+        camera.focus = camera.position + DVec3::from(direction) * scene.radius();
+    }
+    let size = scene.image();
+    let width = match camera.projection {
+        Projection::Equirectangular => size.width,
+        _ => (f64::from(size.height) * widening) as u32,
+    };
+    let scene = scene.clone().with_size(width, size.height).unwrap();
+    // A direction along the camera's upward one is none.
+    scene.clone().with_camera(camera).unwrap_or(scene)
+}
+
+/// The scene's own direction, or any.
+fn directions() -> impl Strategy<Value = Option<[f64; 3]>> {
+    let part = || -1.0..1.0_f64;
+    prop_oneof![Just(None), [part(), part(), part()].prop_map(Some)]
+}
+
 fn curves(scene: &Scene) -> (View, Isoradials) {
     let view = View::new(scene);
     let spec = CurveSpec::new(scene, &view, scene.tolerance());
@@ -55,7 +77,7 @@ fn projections() -> impl Strategy<Value = (Projection, f64)> {
 
 proptest! {
     #![proptest_config(ProptestConfig {
-        cases: 600,
+        cases: 1500,
         rng_seed: RngSeed::Fixed(1),
         ..ProptestConfig::default()
     })]
@@ -64,8 +86,11 @@ proptest! {
     fn hard_edges_equal_each_pixel_s_own_ray(
         (kind, scene) in any_scene(),
         (projection, fov) in projections(),
+        direction in directions(),
+        widening in 0.5..2.5_f64,
     ) {
         let scene = seen_by(&scene, projection, fov, scene.image().height);
+        let scene = looking(&scene, direction, widening);
         let (view, curves) = curves(&scene);
         let drawn = mask::render(&view, &curves).unwrap();
         let single = mask::render_every_pixel(&view, &curves).unwrap();
@@ -86,10 +111,11 @@ proptest! {
     fn smooth_edges_are_the_mean_of_many_rays(
         (kind, scene) in any_scene(),
         (projection, fov) in projections(),
+        direction in directions(),
     ) {
         const RAYS: u32 = 32;
         let height = 12;
-        let scene = seen_by(&scene, projection, fov, height);
+        let scene = looking(&seen_by(&scene, projection, fov, height), direction, 1.2);
         let width = scene.image().width;
         let (view, curves) = curves(&scene);
         let drawn = coverage::render(&view, &curves).unwrap();

@@ -54,7 +54,7 @@ pub(in crate::cli) struct RenderArgs {
     /// The camera's azimuth from +x, or its orbit's [default: the scene's]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     pub(super) azimuth: Option<f64>,
-    /// The vertical field of view [default: the scene's]
+    /// The vertical field of view, or the whole angle of a fisheye [default: the scene's]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     pub(super) fov: Option<f64>,
     /// The output: a .png, .exr or .npz file, a .svg file for the outline of the disk alone, or - for the standard
