@@ -70,6 +70,7 @@ mod error;
 mod file;
 mod layers;
 mod load;
+mod navigator;
 mod overrides;
 mod sky;
 mod validate;
@@ -82,6 +83,7 @@ pub use builtin::{Builtin, DEFAULT_SCENE, builtins};
 pub use checked::Scene;
 pub use error::SceneError;
 pub use layers::{Layer, LayerSet};
+pub use navigator::Navigator;
 pub use overrides::Override;
 pub use sky::{DEFAULT_STAR_RADIUS, Sky, SkyFile, StarSource, Stars};
 pub use validate::{

@@ -1,0 +1,412 @@
+//! The window and its events.
+
+use std::num::NonZero;
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+
+use softbuffer::{Context, Surface};
+use winit::application::ApplicationHandler;
+use winit::dpi::{PhysicalPosition, PhysicalSize};
+use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, OwnedDisplayHandle};
+use winit::keyboard::{Key, NamedKey};
+use winit::window::{Fullscreen, Window, WindowId};
+
+use super::super::method::MethodArgs;
+use super::super::progress::Report;
+use super::super::stdio::print;
+use super::super::threads::start_threads;
+use super::ViewArgs;
+use super::bitmap::Bitmap;
+use super::controls::{self, Action};
+use super::measure::Measure;
+use super::overlay::{Measured, Overlay};
+use super::pace::Pace;
+use super::painter::{Look, Methods, ViewPainter};
+use super::pointed::pointed;
+use super::save;
+use super::viewer::{Button, Request, Viewer};
+use super::watch::SceneWatch;
+use crate::scene::{Animation, ImageSize, builtins};
+
+/// The pixels of a touchpad that count as a notch of a wheel.
+const NOTCH: f64 = 40.0;
+
+/// The share of a display's side that a window takes at most, unless its size is given.
+const MOST_OF_DISPLAY: f64 = 0.9;
+
+/// Frames that are farther apart belong to different movements.
+const PAUSE: Duration = Duration::from_millis(250);
+
+/// Opens the window, and returns when it is closed.
+///
+/// # Errors
+/// A scene, a table or a sky that cannot be read, or no display.
+pub(super) fn run(args: &ViewArgs, report: Report) -> anyhow::Result<()> {
+    let animation = Animation::load_with(&args.scene, &args.set)?;
+    let size = args.size.unwrap_or_else(|| animation.image());
+    let viewer = Viewer::new(animation, size)?;
+    let no_display = |error: &dyn std::fmt::Display| {
+        anyhow::anyhow!(
+            "there is no display to open a window on: {error}; `darkness render` draws pictures without one"
+        )
+    };
+    let event_loop = EventLoop::new().map_err(|error| no_display(&error))?;
+    let context = Context::new(event_loop.owned_display_handle());
+    let context = context.map_err(|error| no_display(&error))?;
+    start_threads(args.threads.threads)?;
+    let methods = Methods::new(MethodArgs::of_table(args.table.clone()), report);
+    let mut painter = ViewPainter::new(&methods);
+    // What cannot be read is told before a window opens.
+    painter.draw_as(viewer.scene(), viewer.shown().form(), |_, _| Ok(()))?;
+    let is_builtin = |name: &str| builtins().iter().any(|builtin| builtin.name() == name);
+    let is_file = !args.scene.to_str().is_some_and(is_builtin);
+    let mut app = ViewApp {
+        args,
+        report,
+        viewer,
+        painter,
+        pace: Pace::default(),
+        overlay: Overlay::new(1.0),
+        watch: is_file
+            .then(|| SceneWatch::new(&args.scene, Instant::now()))
+            .flatten(),
+        measure: args.frames.map(Measure::new),
+        context,
+        open: None,
+        rate: None,
+        last_drawn: None,
+        fault: None,
+        pointed: None,
+        outcome: Ok(()),
+    };
+    event_loop.run_app(&mut app)?;
+    app.outcome?;
+    if let Some(measure) = &app.measure {
+        let scene = args.scene.display();
+        print(&measure.report(
+            &scene,
+            app.viewer.scene().image(),
+            rayon::current_num_threads(),
+        ))?;
+    }
+    Ok(())
+}
+
+/// The window that is open, and its pixels.
+struct OpenWindow {
+    window: Rc<Window>,
+    surface: Surface<OwnedDisplayHandle, Rc<Window>>,
+}
+
+/// The program while its window is open.
+struct ViewApp<'a> {
+    args: &'a ViewArgs,
+    report: Report,
+    viewer: Viewer,
+    painter: ViewPainter<'a>,
+    pace: Pace,
+    overlay: Overlay,
+    watch: Option<SceneWatch>,
+    measure: Option<Measure>,
+    context: Context<OwnedDisplayHandle>,
+    open: Option<OpenWindow>,
+    /// Frames a second of the present movement.
+    rate: Option<f64>,
+    last_drawn: Option<Instant>,
+    /// Why the picture could not be drawn.
+    fault: Option<String>,
+    /// What the pointer is over.
+    pointed: Option<String>,
+    outcome: anyhow::Result<()>,
+}
+
+impl ApplicationHandler for ViewApp<'_> {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        if self.open.is_some() {
+            return;
+        }
+        match self.open(event_loop) {
+            Ok(open) => self.open = Some(open),
+            Err(error) => self.end(event_loop, Err(error)),
+        }
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let now = Instant::now();
+        match event {
+            WindowEvent::CloseRequested => self.end(event_loop, Ok(())),
+            WindowEvent::Resized(size) => self.resize(size),
+            WindowEvent::ScaleFactorChanged { scale_factor, .. } => {
+                self.overlay = Overlay::new(scale_factor);
+            }
+            WindowEvent::RedrawRequested => {
+                if let Err(error) = self.draw(event_loop) {
+                    self.end(event_loop, Err(error));
+                }
+            }
+            WindowEvent::CursorMoved { position, .. } => self.point(position, now),
+            WindowEvent::CursorLeft { .. } => {
+                self.viewer.leave();
+                self.name();
+            }
+            WindowEvent::MouseInput { state, button, .. } => {
+                let button = match button {
+                    MouseButton::Left => Button::Left,
+                    MouseButton::Right => Button::Right,
+                    _ => return,
+                };
+                self.viewer.press(button, state.is_pressed(), now);
+            }
+            WindowEvent::MouseWheel { delta, .. } => {
+                let notches = match delta {
+                    MouseScrollDelta::LineDelta(_, lines) => lines.into(),
+                    MouseScrollDelta::PixelDelta(pixels) => pixels.y / NOTCH,
+                };
+                self.viewer.roll(notches, now);
+            }
+            WindowEvent::KeyboardInput {
+                event,
+                is_synthetic: false,
+                ..
+            } => {
+                if let Some(action) = action(&event) {
+                    self.act(action, event_loop, now);
+                }
+            }
+            _ => {}
+        }
+        self.ask_for_frame();
+    }
+
+    fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
+        let now = Instant::now();
+        if self
+            .watch
+            .as_mut()
+            .is_some_and(|watch| watch.has_changed(now))
+        {
+            let read = Animation::load_with(&self.args.scene, &self.args.set);
+            self.viewer.reload(read, now);
+        }
+        self.viewer.pass(now);
+        self.ask_for_frame();
+        let watch = self.watch.as_ref().map(SceneWatch::next);
+        let next = self.viewer.next(now).into_iter().chain(watch).min();
+        event_loop.set_control_flow(next.map_or(ControlFlow::Wait, ControlFlow::WaitUntil));
+    }
+}
+
+impl ViewApp<'_> {
+    /// Opens the window, as large as was asked for or as the display has room for.
+    fn open(&mut self, event_loop: &ActiveEventLoop) -> anyhow::Result<OpenWindow> {
+        let mut size = self.viewer.scene().image();
+        let display = event_loop
+            .primary_monitor()
+            .or_else(|| event_loop.available_monitors().next());
+        if let (None, Some(display)) = (self.args.size, display) {
+            size = fitted(size, display.size());
+        }
+        let attributes = Window::default_attributes()
+            .with_title(self.title())
+            .with_inner_size(PhysicalSize::new(size.width, size.height));
+        let window = Rc::new(event_loop.create_window(attributes)?);
+        let surface = Surface::new(&self.context, Rc::clone(&window));
+        let surface = surface.map_err(|error| anyhow::anyhow!("{error}"))?;
+        self.overlay = Overlay::new(window.scale_factor());
+        let open = OpenWindow { window, surface };
+        let size = open.window.inner_size();
+        self.open = Some(open);
+        self.resize(size);
+        self.ask_for_frame();
+        self.open
+            .take()
+            .ok_or_else(|| anyhow::anyhow!("the window has gone"))
+    }
+
+    /// Ends the program when the events of now are done.
+    fn end(&mut self, event_loop: &ActiveEventLoop, outcome: anyhow::Result<()>) {
+        self.outcome = outcome;
+        event_loop.exit();
+    }
+
+    fn resize(&mut self, size: PhysicalSize<u32>) {
+        let (Some(width), Some(height)) = (NonZero::new(size.width), NonZero::new(size.height))
+        else {
+            return;
+        };
+        if let Some(open) = &mut self.open
+            && let Err(error) = open.surface.resize(width, height)
+        {
+            self.fault = Some(error.to_string());
+        }
+        self.viewer.resize(ImageSize {
+            width: size.width,
+            height: size.height,
+        });
+    }
+
+    fn point(&mut self, position: PhysicalPosition<f64>, now: Instant) {
+        self.viewer.point((position.x, position.y), now);
+        self.name();
+    }
+
+    /// Tells in the window's title what the pointer is over.
+    fn name(&mut self) {
+        let pointer = self.viewer.pointer();
+        let told = pointer.and_then(|pointer| pointed(self.viewer.scene(), pointer));
+        if told != self.pointed {
+            self.pointed = told;
+            if let Some(open) = &self.open {
+                open.window.set_title(&self.title());
+            }
+        }
+    }
+
+    fn title(&self) -> String {
+        let scene = self.args.scene.display();
+        match &self.pointed {
+            Some(pointed) => format!("{scene}: {pointed}"),
+            None => format!("{scene}: darkness"),
+        }
+    }
+
+    /// Asks for a frame where the picture has changed.
+    fn ask_for_frame(&mut self) {
+        let is_measuring = self
+            .measure
+            .as_ref()
+            .is_some_and(|measure| !measure.is_done());
+        if let Some(open) = &self.open
+            && (self.viewer.take_change() || is_measuring)
+        {
+            open.window.request_redraw();
+        }
+    }
+
+    fn act(&mut self, action: Action, event_loop: &ActiveEventLoop, now: Instant) {
+        match self.viewer.act(action, now) {
+            Some(Request::Close) => self.end(event_loop, Ok(())),
+            Some(Request::FullScreen) => {
+                if let Some(OpenWindow { window, .. }) = &self.open {
+                    let full = window.fullscreen().is_none();
+                    window.set_fullscreen(full.then_some(Fullscreen::Borderless(None)));
+                }
+            }
+            Some(Request::SaveScene) => self.saved(save::scene(self.viewer.scene()), now),
+            Some(Request::SavePicture) => {
+                let look = look(&self.viewer, None);
+                let saved = save::picture(look, self.args.picture_format, &mut self.painter);
+                self.saved(saved, now);
+            }
+            None => {}
+        }
+        self.name();
+    }
+
+    /// Tells which file was written, or why none was.
+    fn saved(&mut self, saved: anyhow::Result<std::path::PathBuf>, now: Instant) {
+        let text = match saved {
+            Ok(path) => path.display().to_string(),
+            Err(error) => error.to_string(),
+        };
+        self.report.note(&text);
+        self.viewer.tell(text, now);
+    }
+
+    /// Draws the picture and shows it.
+    fn draw(&mut self, event_loop: &ActiveEventLoop) -> anyhow::Result<()> {
+        let failed = |error: softbuffer::SoftBufferError| {
+            anyhow::anyhow!("the window cannot be drawn into: {error}")
+        };
+        let Some(OpenWindow { window, surface }) = &mut self.open else {
+            return Ok(());
+        };
+        if let Some(measure) = &mut self.measure {
+            self.viewer.turn_to_measure();
+            measure.begin();
+        }
+        let start = Instant::now();
+        let reduction = match &self.measure {
+            Some(_) => Some(1),
+            None if self.viewer.is_moving() => Some(self.pace.reduction()),
+            None => None,
+        };
+        let mut buffer = surface.buffer_mut().map_err(failed)?;
+        if let Some(measure) = &mut self.measure {
+            measure.shown();
+        }
+        let look = look(&self.viewer, reduction);
+        self.fault = self
+            .painter
+            .paint(look, &mut buffer)
+            .err()
+            .map(|error| error.to_string());
+        if self.fault.is_some() {
+            buffer.fill(0);
+        }
+        let rate = self.rate.filter(|_| reduction.is_some());
+        let measured = Measured {
+            rate,
+            reduction: reduction.unwrap_or(1),
+            scale: self.painter.scale(),
+            pointed: self.pointed.as_deref(),
+            fault: self.fault.as_deref(),
+        };
+        let mut bitmap = Bitmap::new(&mut buffer, look.scene.image().width as usize);
+        self.overlay.write(&self.viewer, &measured, &mut bitmap);
+        window.pre_present_notify();
+        buffer.present().map_err(failed)?;
+        let end = Instant::now();
+        if reduction.is_some() {
+            self.pace.drawn(end - start);
+        }
+        let since = self.last_drawn.replace(end).map(|last| end - last);
+        self.rate = since.filter(|&since| since < PAUSE).map(|since| {
+            let now = 1.0 / since.as_secs_f64();
+            self.rate.map_or(now, |rate| 0.9 * rate + 0.1 * now)
+        });
+        if self.measure.as_ref().is_some_and(Measure::is_done) {
+            self.end(event_loop, Ok(()));
+        }
+        Ok(())
+    }
+}
+
+/// What the viewer looks at.
+fn look(viewer: &Viewer, reduction: Option<u32>) -> Look<'_> {
+    Look {
+        scene: viewer.scene(),
+        shown: viewer.shown(),
+        order: viewer.order(),
+        reduction,
+    }
+}
+
+/// What a pressed key asks for. A key that is held asks again only where more of it makes sense.
+fn action(event: &KeyEvent) -> Option<Action> {
+    if event.state == ElementState::Released {
+        return None;
+    }
+    let typed = match &event.logical_key {
+        Key::Named(NamedKey::Space) => ' ',
+        Key::Character(text) => text.chars().next()?,
+        _ => return None,
+    };
+    let action = controls::action(typed)?;
+    let repeats = matches!(action, Action::ScaleFov(_) | Action::Expose(_));
+    (repeats || !event.repeat).then_some(action)
+}
+
+/// The largest size of the same shape that a display has room for, and not larger than the picture.
+fn fitted(size: ImageSize, display: PhysicalSize<u32>) -> ImageSize {
+    let share = |display: u32, side: u32| MOST_OF_DISPLAY * f64::from(display) / f64::from(side);
+    let scale = share(display.width, size.width)
+        .min(share(display.height, size.height))
+        .min(1.0);
+    let side = |side: u32| ((scale * f64::from(side)) as u32).max(1);
+    ImageSize {
+        width: side(size.width),
+        height: side(size.height),
+    }
+}
