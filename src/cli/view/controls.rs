@@ -65,7 +65,7 @@ pub(super) const CONTROLS: [Control; 16] = [
     ),
     keys(
         "L",
-        "the next of mask, light, and each layer in false colour; Shift+L: the one before",
+        "the next of mask, light and each layer in false colour; Shift+L: back",
         &[('l', Action::ShowNext), ('L', Action::ShowPrevious)],
     ),
     keys(

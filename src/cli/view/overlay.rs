@@ -55,7 +55,8 @@ impl Overlay {
         if let Some((scale, colours)) = measured.scale {
             self.scale(scale.labels(viewer.shown()), colours, bitmap);
         }
-        if viewer.has_figures() {
+        // The help may stand in the same place.
+        if viewer.has_figures() && !viewer.has_help() {
             let lines = figures(viewer, measured);
             self.lines(&lines, (0, 0), bitmap);
         }

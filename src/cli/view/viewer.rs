@@ -447,5 +447,4 @@ impl Viewer {
 }
 
 #[cfg(test)]
-#[path = "viewer_tests.rs"]
 mod tests;

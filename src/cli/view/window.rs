@@ -46,14 +46,15 @@ pub(super) fn run(args: &ViewArgs, report: Report) -> anyhow::Result<()> {
     let animation = Animation::load_with(&args.scene, &args.set)?;
     let size = args.size.unwrap_or_else(|| animation.image());
     let viewer = Viewer::new(animation, size)?;
-    let no_display = |error: &dyn std::fmt::Display| {
+    let no_display = || {
         anyhow::anyhow!(
-            "there is no display to open a window on: {error}; `darkness render` draws pictures without one"
+            "there is no display to open a window on: neither WAYLAND_DISPLAY nor DISPLAY names one that answers; \
+             `darkness render` draws pictures without one"
         )
     };
-    let event_loop = EventLoop::new().map_err(|error| no_display(&error))?;
+    let event_loop = EventLoop::new().map_err(|_| no_display())?;
     let context = Context::new(event_loop.owned_display_handle());
-    let context = context.map_err(|error| no_display(&error))?;
+    let context = context.map_err(|_| no_display())?;
     start_threads(args.threads.threads)?;
     let methods = Methods::new(MethodArgs::of_table(args.table.clone()), report);
     let mut painter = ViewPainter::new(&methods);
