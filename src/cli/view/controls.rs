@@ -79,8 +79,8 @@ pub(super) const CONTROLS: [Control; 16] = [
         &[(' ', Action::Play)],
     ),
     mouse(
-        "drag below",
-        "with an animation: choose a frame on the bar at the lower edge",
+        "drag bar",
+        "choose a frame of the animation; the bar is at the lower edge",
     ),
     keys(
         "F",

@@ -223,17 +223,25 @@ impl<'a> ViewPainter<'a> {
         Ok(())
     }
 
-    /// Draws a scene into the memory. At rest it is drawn as `darkness render` draws it: with the table that it needs,
-    /// and with curves of its own, where a moving camera's may be more accurate ones of a frame before.
-    fn draw(&mut self, scene: &Scene, form: Form, is_at_rest: bool) -> anyhow::Result<()> {
-        if let Some(sky) = scene.sky().filter(|_| form.shows_light())
+    /// Reads the sky, if it is not the one that was read last.
+    ///
+    /// # Errors
+    /// A file that cannot be read; the last sky stays.
+    pub(super) fn read(&mut self, sky: Option<&Sky>) -> anyhow::Result<()> {
+        if let Some(sky) = sky
             && self.sky.as_ref().is_none_or(|(read, _)| read != sky)
         {
-            self.sky = None;
             let source = read_sky(sky, 0, SKY_MEMORY, self.methods.report)?;
             self.sky = Some((sky.clone(), Arc::new(source)));
             self.drawer = None;
         }
+        Ok(())
+    }
+
+    /// Draws a scene into the memory. At rest it is drawn as `darkness render` draws it: with the table that it needs,
+    /// and with curves of its own, where a moving camera's may be more accurate ones of a frame before.
+    fn draw(&mut self, scene: &Scene, form: Form, is_at_rest: bool) -> anyhow::Result<()> {
+        self.read(scene.sky().filter(|_| form.shows_light()))?;
         if is_at_rest || self.drawer.is_none() {
             let place = needed(scene, form);
             let method = self.methods.open(place)?;
@@ -292,4 +300,98 @@ fn enlarge(coarse: &[u32], columns: usize, pixels: &mut [u32], width: usize, by:
             copy.copy_from_slice(first);
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Navigator;
+    use crate::table::Table;
+
+    const SIZE: (u32, u32) = (65, 34);
+
+    /// Calls `body` with a painter whose table is the standard one.
+    fn with_painter(body: impl FnOnce(&mut ViewPainter<'_>, &Table)) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("standard.table");
+        let table = Table::generate(&Spec::standard()).unwrap();
+        table.save(&path).unwrap();
+        let methods = Methods::new(MethodArgs::of_table(Some(path)), Report::new(true));
+        body(&mut ViewPainter::new(&methods), &table);
+    }
+
+    fn scene(name: &str, (width, height): (u32, u32)) -> Scene {
+        let scene = Scene::builtin(name).unwrap();
+        scene.with_size(width, height).unwrap()
+    }
+
+    fn look(scene: &Scene, reduction: Option<u32>) -> Look<'_> {
+        Look {
+            scene,
+            shown: Shown::of(scene),
+            order: None,
+            reduction,
+        }
+    }
+
+    /// The colours of a scene's picture, by a renderer of its own.
+    fn rendered(table: &Table, scene: &Scene) -> Vec<u32> {
+        let picture = Renderer::new(table).render_rgb(scene).unwrap();
+        picture.pixels().map(|pixel| colour(pixel.0)).collect()
+    }
+
+    #[test]
+    fn at_rest_it_draws_what_a_renderer_of_its_own_draws() {
+        with_painter(|painter, table| {
+            let mut pixels = vec![0; (SIZE.0 * SIZE.1) as usize];
+            let wide = scene("lit", SIZE);
+            let mut navigator = Navigator::new(&wide);
+            for step in 0..5 {
+                // Curves of narrow views are more accurate ones.
+                navigator.scale_fov(if step < 3 { 0.3 } else { 4.0 });
+                let scene = wide.clone().with_camera(navigator.camera()).unwrap();
+                for reduction in [Some(1), None] {
+                    painter.paint(look(&scene, reduction), &mut pixels).unwrap();
+                }
+                assert!(pixels == rendered(table, &scene), "{step}");
+            }
+            let stars = scene("stars", SIZE);
+            painter.paint(look(&stars, None), &mut pixels).unwrap();
+            assert!(pixels == rendered(table, &stars));
+            assert!(painter.paint(look(&stars, None), &mut pixels[1..]).is_err());
+        });
+    }
+
+    #[test]
+    fn a_coarse_frame_is_enlarged_over_the_whole_window() {
+        with_painter(|painter, table| {
+            let whole = scene("lit", SIZE);
+            let (width, height) = (SIZE.0 as usize, SIZE.1 as usize);
+            for by in 2..=4 {
+                let mut pixels = vec![7; width * height];
+                painter.paint(look(&whole, Some(by)), &mut pixels).unwrap();
+                let (columns, rows) = (SIZE.0.div_ceil(by), SIZE.1.div_ceil(by));
+                let coarse = rendered(table, &scene("lit", (columns, rows)));
+                for (place, &pixel) in pixels.iter().enumerate() {
+                    let (x, y) = (place % width / by as usize, place / width / by as usize);
+                    assert_eq!(pixel, coarse[y * columns as usize + x], "{by}: {place}");
+                }
+            }
+        });
+    }
+
+    #[test]
+    fn a_sky_that_cannot_be_read_leaves_the_last_one() {
+        with_painter(|painter, _| {
+            let stars = scene("stars", SIZE);
+            painter.read(stars.sky()).unwrap();
+            let missing = Sky {
+                panorama: Some(crate::scene::SkyFile::new("no such file.png")),
+                ..Sky::default()
+            };
+            let error = painter.read(Some(&missing)).unwrap_err().to_string();
+            assert!(error.contains("no such file.png"), "{error}");
+            assert_eq!(painter.sky.as_ref().map(|(sky, _)| sky), stars.sky());
+        });
+    }
 }

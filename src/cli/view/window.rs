@@ -188,7 +188,13 @@ impl ApplicationHandler for ViewApp<'_> {
             .is_some_and(|watch| watch.has_changed(now))
         {
             let read = Animation::load_with(&self.args.scene, &self.args.set);
-            self.viewer.reload(read, now);
+            let sky = read
+                .as_ref()
+                .map_or(Ok(()), |read| self.painter.read(read.sky()));
+            match sky {
+                Ok(()) => self.viewer.reload(read, now),
+                Err(error) => self.viewer.fail(error.to_string()),
+            }
         }
         self.viewer.pass(now);
         self.ask_for_frame();
@@ -302,7 +308,6 @@ impl ViewApp<'_> {
             }
             None => {}
         }
-        self.name();
     }
 
     /// Tells which file was written, or why none was.
@@ -320,13 +325,14 @@ impl ViewApp<'_> {
         let failed = |error: softbuffer::SoftBufferError| {
             anyhow::anyhow!("the window cannot be drawn into: {error}")
         };
-        let Some(OpenWindow { window, surface }) = &mut self.open else {
-            return Ok(());
-        };
         if let Some(measure) = &mut self.measure {
             self.viewer.turn_to_measure();
             measure.begin();
         }
+        self.name();
+        let Some(OpenWindow { window, surface }) = &mut self.open else {
+            return Ok(());
+        };
         let start = Instant::now();
         let reduction = match &self.measure {
             Some(_) => Some(1),
