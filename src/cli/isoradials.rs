@@ -8,7 +8,7 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 
 use super::destination::{Destination, has_extension, onto_input, unsupported_extension};
-use super::misuse::misuse;
+use super::misuse::{check_flat, misuse};
 use super::progress::{Report, count, duration, warn};
 use super::radius::radius;
 use super::threads::start_threads;
@@ -115,6 +115,7 @@ fn positive(text: &str) -> Result<f64, String> {
 pub(super) fn run(args: &IsoradialsArgs, report: Report) -> anyhow::Result<()> {
     let animation = Animation::load_with(&args.scene, &args.set)?;
     let scene = animation.check(animation.first())?;
+    check_flat(&scene, "a figure of curves")?;
     let levels = levels(args);
     let needs_disk = levels
         .iter()

@@ -18,14 +18,12 @@ use crate::isoradial::{CurveSpec, Edge, height_at};
 use crate::light::SightGeometry;
 use crate::light::flux;
 use crate::orbit::exact::Exact;
-use crate::render::picture_matrix;
 use crate::scene::{PixelRay, View};
 
 /// The image of one order in a view.
 pub(super) struct DiskImage<'a> {
     view: &'a View,
     order: u32,
-    matrix: [[f64; 3]; 3],
     geometry: SightGeometry,
     /// m of the [module's page](self). Seen from the disk's plane φ is the same at all azimuths, and s is α.
     stretch: f64,
@@ -59,7 +57,6 @@ impl<'a> DiskImage<'a> {
         Self {
             view,
             order,
-            matrix: picture_matrix(view),
             geometry: SightGeometry::new(view),
             stretch: if n > 0.0 { (1.0 - n) / (1.0 + n) } else { 0.0 },
         }
@@ -90,11 +87,7 @@ impl<'a> DiskImage<'a> {
 
     /// Returns where a place is seen, in pixels from the picture's left and top; `None` behind the camera.
     pub(super) fn point(&self, seen: &SeenPlace) -> Option<Point> {
-        let PixelRay { z, ta, tb } = seen.ray;
-        let [w, wx, wy] = self
-            .matrix
-            .map(|row| row[0] * z + row[1] * ta + row[2] * tb);
-        let point = Point::new(wx / w, wy / w);
-        (w > 0.0 && point.is_finite()).then_some(point)
+        let point = Point::from(self.view.place_of(seen.ray)?);
+        point.is_finite().then_some(point)
     }
 }

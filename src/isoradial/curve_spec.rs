@@ -1,16 +1,24 @@
 //! What curves are built for: one camera radius, at most one disk, the part of the sky in the picture, and its pixels.
 //!
 //! # Pixels
-//! Let p be the height of a pixel in the plane at distance 1 from the camera. At the angle θ from the picture's centre,
-//! a radian in any direction is at most `1/(p cos²θ)` pixels long. Let a be the angle between the centre and the hole,
-//! and c the angle between the centre and the corners. A ray at the angle ψ from the hole's direction has
-//! `θ ≤ min(ψ + a, c)`. So a radian there is at most `1/(p cos² min(ψ + a, c))` pixels long:
-//! [`CurveSpec::pixels_per_radian`].
+//! Let p be the height of a pixel in the picture's centre, in radians. At the angle θ from the centre, a radian in any
+//! direction is at most `m(θ)/p` pixels long: m is [`Projection::stretch`], `1/cos²θ` in perspective. Let a be the
+//! angle between the centre and the hole, and c the angle between the centre and the corners. A ray at the angle ψ from
+//! the hole's direction has `θ ≤ min(ψ + a, c)`. So a radian there is at most `m(min(ψ + a, c))/p` pixels long:
+//! [`CurveSpec::pixels_per_radian`]. In an equirectangular picture angles from the horizon stand for those from the
+//! centre.
+//!
+//! A fisheye of 360 degrees shows the direction behind the camera all round, and an equirectangular picture its poles
+//! along a whole row. There a pixel is no angle at all. Where pixels are [`NARROWEST`] times narrower than in the centre
+//! or more, the tolerance is that of pixels so many times narrower.
 
 use super::ray_angles::{angle_between, angle_of};
 use super::ray_bounds::RayBounds;
 use crate::orbit::invariants::{critical_slope, three_u_minus_two};
-use crate::scene::{Scene, View};
+use crate::scene::{Projection, Scene, View};
+
+/// Pixels that are narrower than in the picture's centre by more than this count as narrower by this.
+const NARROWEST: f64 = 20.0;
 
 /// What curves are built for: one camera radius, at most one disk, and one picture or several from that radius.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,11 +29,14 @@ pub struct CurveSpec {
     pub slope_scale: f64,
     /// The inverse radii of the disk's inner and outer edge, in this order. Without a disk there are no curves.
     pub u_edges: Option<[f64; 2]>,
-    /// The height of a pixel in the plane at distance 1.
+    /// The height of a pixel in the picture's centre, in radians: in the plane at distance 1.
     pub pixel: f64,
-    /// The angle between the picture's centre and the hole's direction, in radians.
+    /// How directions become places in the picture.
+    pub projection: Projection,
+    /// The angle between the picture's centre, or the horizon of an equirectangular picture, and the hole's direction,
+    /// in radians.
     pub axis: f64,
-    /// The angle between the picture's centre and its corners, in radians.
+    /// The angle between the picture's centre, or that horizon, and the corners, in radians.
     pub corner: f64,
     /// Bounds of the rays in the picture.
     pub window: RayBounds,
@@ -36,16 +47,32 @@ pub struct CurveSpec {
 impl CurveSpec {
     /// Describes the curves for the picture of `scene`, with edges right to `tolerance` pixels.
     pub fn new(scene: &Scene, view: &View, tolerance: f64) -> Self {
+        let projection = view.lens().projection();
         let centre = view.ray_at(0.0, 0.0);
         let (x, y) = (view.x_at(0.0), view.y_at(0.0));
         let axis = libm::atan2(centre.transverse(), centre.z);
-        let corner = libm::atan((x * x + y * y).sqrt());
+        let (axis, corner, window) = match projection {
+            Projection::Perspective => {
+                let corner = libm::atan((x * x + y * y).sqrt());
+                (axis, corner, RayBounds::of_picture(view, axis, corner))
+            }
+            // Y of the upper edge is half of the whole angle.
+            Projection::Fisheye => {
+                let narrowest = libm::acos(2.0 / NARROWEST - 1.0);
+                (axis, y.min(narrowest), RayBounds::of_picture(view, axis, y))
+            }
+            Projection::Equirectangular => {
+                let height = libm::asin(view.parts()[0][2].abs().min(1.0));
+                (height, libm::acos(1.0 / NARROWEST), RayBounds::ALL)
+            }
+        };
         Self {
             tolerance,
             pixel: (view.y_at(0.0) - view.y_at(1.0)).abs(),
+            projection,
             axis,
             corner,
-            window: RayBounds::of_picture(view, axis, corner),
+            window,
             ..Self::all_round(
                 view.u0(),
                 view.slope_scale(),
@@ -64,6 +91,7 @@ impl CurveSpec {
             slope_scale,
             u_edges: radii.map(|(inner, outer)| [1.0 / inner, 1.0 / outer]),
             pixel: 1.0,
+            projection: Projection::Perspective,
             axis: 0.0,
             corner: 0.0,
             window: RayBounds::ALL,
@@ -71,9 +99,10 @@ impl CurveSpec {
         }
     }
 
-    /// Describes curves that serve the pictures of both. Returns `None` if the camera radii or the disks differ.
+    /// Describes curves that serve the pictures of both. Returns `None` if the camera radii, the disks or the
+    /// projections differ.
     pub fn union(&self, other: &Self) -> Option<Self> {
-        let radii = |spec: &Self| (spec.u0, spec.slope_scale, spec.u_edges);
+        let radii = |spec: &Self| (spec.u0, spec.slope_scale, spec.u_edges, spec.projection);
         (radii(self) == radii(other)).then(|| Self {
             pixel: self.pixel.min(other.pixel),
             axis: self.axis.max(other.axis),
@@ -84,16 +113,34 @@ impl CurveSpec {
         })
     }
 
+    /// Describes curves that serve the pictures beside this one too: of a camera that turns about the hole, or aside by
+    /// up to half its field of view.
+    pub(crate) fn ahead(&self) -> Self {
+        Self {
+            axis: self.axis + self.corner,
+            window: self.window.widened(self.corner),
+            ..*self
+        }
+    }
+
+    /// Returns whether this is another picture from the same radius, with pixels of about the same size: probably the
+    /// next one of a camera that turns.
+    pub(crate) fn is_beside(&self, other: &Self) -> bool {
+        let same = self.union(other).is_some() && self.tolerance == other.tolerance;
+        same && (0.5..=2.0).contains(&(self.pixel / other.pixel))
+    }
+
     /// Returns κ of the critical ray. It is positive (towards the hole) outside the photon sphere, negative inside.
     pub fn critical(&self) -> f64 {
         critical_kappa(self.u0, self.slope_scale)
     }
 
-    /// Returns `1/(p cos² min(psi + a, c))`: the most pixels in a radian, for rays at most `psi` radians from the
-    /// hole's direction. Here p is [`Self::pixel`], a is [`Self::axis`] and c is [`Self::corner`].
+    /// Returns `m(min(psi + a, c))/p`: the most pixels in a radian, for rays at most `psi` radians from the
+    /// hole's direction. Here m is [`Projection::stretch`], p is [`Self::pixel`], a is [`Self::axis`] and c is
+    /// [`Self::corner`].
     pub fn pixels_per_radian(&self, psi: f64) -> f64 {
         let cosine = libm::cos((psi + self.axis).min(self.corner));
-        1.0 / (self.pixel * cosine * cosine)
+        self.projection.stretch(cosine) / self.pixel
     }
 
     /// Bounds the distance in the picture of two rays of one plane, in pixels, from their `h = κ − κ_c`.

@@ -2,6 +2,7 @@
 
 use super::curve_spec::CurveSpec;
 use super::ray_angles::angle_between;
+use crate::scene::Projection;
 
 /// Measures distances between rays of one plane in pixels: the bounds of [`CurveSpec::pixels`], computed faster.
 #[derive(Debug, Clone, Copy)]
@@ -15,6 +16,7 @@ pub(super) struct PixelMetric {
     /// The cosine of [`CurveSpec::corner`].
     corner: f64,
     pixel: f64,
+    projection: Projection,
     max_per_radian: f64,
 }
 
@@ -27,7 +29,8 @@ impl PixelMetric {
             axis: (libm::cos(spec.axis), libm::sin(spec.axis)),
             corner,
             pixel: spec.pixel,
-            max_per_radian: 1.0 / (spec.pixel * corner * corner),
+            projection: spec.projection,
+            max_per_radian: spec.projection.stretch(corner) / spec.pixel,
         }
     }
 
@@ -51,7 +54,7 @@ impl PixelMetric {
         } else {
             self.corner
         };
-        1.0 / (self.pixel * cosine * cosine)
+        self.projection.stretch(cosine) / self.pixel
     }
 
     /// Returns whether any ray of an interval of h is in the picture.

@@ -1,7 +1,7 @@
 //! Bounds of the rays in a picture.
 
-use super::ray_angles::cotangent_of;
-use crate::scene::{Affine, View};
+use super::ray_angles::{angle_of, cotangent_of};
+use crate::scene::{Direction, Projection, View};
 
 /// Bounds of a set of rays: an interval of κ, and an interval of `D/N`, the cotangent of φ₁ (see the
 /// [module's page](super)).
@@ -60,25 +60,30 @@ impl RayBounds {
     }
 
     /// Bounds the rays of a picture's rectangle. All their transverse parts lie in a circle about that of the central
-    /// ray. Returns `None` if that circle contains zero: the ray straight at the hole, or straight away from it.
+    /// ray. Returns `None` if that circle contains zero (the ray straight at the hole, or straight away from it), and for
+    /// pictures that are not flat.
     fn of_rectangle(view: &View) -> Option<Self> {
-        let (z, ta, tb) = (view.z(), view.ta(), view.tb());
+        // The rays of other pictures than flat ones bound no rectangle.
+        if view.lens().projection() != Projection::Perspective {
+            return None;
+        }
+        let [z, ta, tb] = view.parts();
         let (half_x, half_y) = (view.x_at(f64::from(view.width())), view.y_at(0.0));
-        let reach = |part: Affine| (part.per_x * half_x).abs() + (part.per_y * half_y).abs();
-        let s = (ta.at_centre * ta.at_centre + tb.at_centre * tb.at_centre).sqrt();
+        let reach = |[_, right, up]: Direction| (right * half_x).abs() + (up * half_y).abs();
+        let s = (ta[0] * ta[0] + tb[0] * tb[0]).sqrt();
         let (reach_a, reach_b) = (reach(ta), reach(tb));
         let radius = (reach_a * reach_a + reach_b * reach_b).sqrt();
         let (s_least, s_most) = (s - radius, s + radius);
         if s_least <= 0.0 {
             return None;
         }
-        let (z_least, z_most) = (z.at_centre - reach(z), z.at_centre + reach(z));
+        let (z_least, z_most) = (z[0] - reach(z), z[0] + reach(z));
         let kappa = (
             z_least / if z_least < 0.0 { s_least } else { s_most },
             z_most / if z_most < 0.0 { s_most } else { s_least },
         );
         // The gradient of t_a/s is |t_b|/s² ≤ 1/s.
-        let (cosine, spread) = (ta.at_centre / s, radius / s_least);
+        let (cosine, spread) = (ta[0] / s, radius / s_least);
         let (least, most) = ((cosine - spread).max(-1.0), (cosine + spread).min(1.0));
         let (n, d) = (view.n_p().abs(), view.plane_slope());
         let over_n = |d: f64| {
@@ -99,6 +104,19 @@ impl RayBounds {
         Self {
             kappa: hull(self.kappa, other.kappa),
             cotangent: hull(self.cotangent, other.cotangent),
+        }
+    }
+
+    /// Widens the bounds of κ by an angle, and those of the cotangent to three times their width.
+    pub(super) fn widened(&self, angle: f64) -> Self {
+        let wider = |bound: f64, angle: f64| cotangent_of(angle_of(bound) + angle);
+        let (low, high) = self.kappa;
+        let (least, greatest) = self.cotangent;
+        // Not a number where both are the same infinity, which no bound is beyond.
+        let width = (greatest - least).max(0.0);
+        Self {
+            kappa: (low.min(wider(low, angle)), high.max(wider(high, -angle))),
+            cotangent: (least - width, greatest + width),
         }
     }
 

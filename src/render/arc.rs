@@ -131,6 +131,18 @@ impl EdgeArc {
         }
     }
 
+    /// The same arc, so many pixels farther right.
+    pub(super) fn moved_right(mut self, pixels: f64) -> Self {
+        let moved = |(first, last): (f64, f64)| (first + pixels, last + pixels);
+        if self.steep {
+            self.v = moved(self.v);
+            self.hull = moved(self.hull);
+        } else {
+            self.u = moved(self.u);
+        }
+        self
+    }
+
     /// Returns v at u.
     #[inline]
     pub(super) fn at(&self, u: f64) -> f64 {

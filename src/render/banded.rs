@@ -182,6 +182,9 @@ fn left(path: &OutlinePath, view: &View, sees: impl Fn((f64, f64)) -> bool) -> i
             place(i, 0.754_877_666_246_692_8, view.width()),
             place(i, 0.569_840_290_998_053_3, view.height()),
         );
+        if !view.shows(place) {
+            continue;
+        }
         let distance = distance(path, place);
         if distance > best.0 {
             best = (distance, place);

@@ -30,6 +30,9 @@ pub(super) fn fill_every_pixel<T: MaskSample>(
 /// Returns the order in front at a place of the picture, in pixels from its left and its top.
 #[inline]
 pub(super) fn front(view: &View, curves: &Isoradials, (column, row): (f64, f64)) -> Option<u32> {
+    if !view.shows((column, row)) {
+        return None;
+    }
     let ray = view.ray_at(view.x_at(column), view.y_at(row));
     let s = ray.transverse();
     // A ray straight at the hole or away from it has no plane and meets no disk.

@@ -145,7 +145,11 @@ impl Bands<'_> {
         let (width, stride) = (self.view.width() as usize, self.stride);
         let top = self.outline.draw(band, scratch);
         scratch.rows(|cells, row, left| {
-            fill_row(cells, row, left, &mut pixels[row * stride..][..width]);
+            let pixels = &mut pixels[row * stride..][..width];
+            fill_row(cells, row, left, pixels);
+            let (from, to) = self.view.shown_columns((top + row) as u32);
+            pixels[..from as usize].fill(T::default());
+            pixels[to as usize..].fill(T::default());
         });
         for &(column, row) in &scratch.doubtful {
             let (column, row) = (column as usize, row as usize);

@@ -13,6 +13,7 @@
 use super::section::Section;
 use super::shader::{PlaceRay, Shader};
 use crate::isoradial::Boundary;
+use crate::scene::PixelRay;
 
 /// A line may be this far from the true share.
 const WRONG: f64 = 0.1;
@@ -91,14 +92,12 @@ impl<'a> Mixture<'a> {
     fn of_part(shader: &'a Shader<'a>, place: (f64, f64), sides: (f64, f64)) -> Self {
         let ray = shader.ray(place);
         let view = shader.view;
-        let side = view.pixel_side();
-        let (z, ta, tb) = (view.z(), view.ta(), view.tb());
         let s = ray.s;
         let kappa = ray.ray.z / s;
         let (n_p, d_a) = (view.n_p().abs(), view.plane_slope());
         let (n, d) = (n_p * s, d_a * ray.ray.ta);
         let total = n + d.abs();
-        let gradient = |z: f64, ta: f64, tb: f64| {
+        let gradient = |PixelRay { z, ta, tb }| {
             let s_change = (ray.ray.ta * ta + ray.ray.tb * tb) / s;
             let (n_change, d_change) = (n_p * s_change, d_a * ta);
             let d_size_change = d_change.abs() * (d * d_change).signum();
@@ -110,8 +109,6 @@ impl<'a> Mixture<'a> {
             };
             ((z - kappa * s_change) / s, x_change)
         };
-        let along_x = gradient(z.per_x * side, ta.per_x * side, tb.per_x * side);
-        let along_y = gradient(-z.per_y * side, -ta.per_y * side, -tb.per_y * side);
         let sectors = shader.curves.sectors(ray.meets.quarter);
         let x = ray.meets.x;
         let sector = sectors
@@ -123,7 +120,7 @@ impl<'a> Mixture<'a> {
             place,
             sides,
             ray,
-            change: [along_x, along_y],
+            change: view.changes_at(ray.point.0, ray.point.1).map(gradient),
             boundaries: sector.map_or(&[][..], |sector| &sector.boundaries),
         }
     }

@@ -50,6 +50,7 @@ pub mod pixelwise;
 mod planes;
 mod projection;
 mod renderer;
+mod round;
 mod scene_frame;
 mod section;
 mod shaded;
@@ -62,8 +63,6 @@ pub use error::RenderError;
 #[cfg(feature = "figure")]
 pub use outline::disk_outline;
 pub use planes::{Form, FrameMemory, Pixels, Plane};
-#[cfg(feature = "figure")]
-pub(crate) use projection::picture_matrix;
 pub use renderer::Renderer;
 pub use scene_frame::FrameReport;
 

@@ -38,6 +38,20 @@ impl<I: Ink<N>, const N: usize> Painter<'_, I, N> {
         }
     }
 
+    /// Clears what of `rows` rows is beyond the rim of a fisheye.
+    pub(super) fn clear_beyond_the_rim(&self, rows: usize, memory: &mut I::Band<'_>) {
+        let view = self.shader.view;
+        for row in 0..rows {
+            let (from, to) = view.shown_columns((self.top + row) as u32);
+            for columns in [(0, from), (to, view.width())] {
+                if columns.0 < columns.1 {
+                    let columns = (columns.0 as usize, columns.1 as usize);
+                    self.ink.clear(memory, row, columns);
+                }
+            }
+        }
+    }
+
     /// Paints the pixels that one order covers wholly: runs of `rows` rows, by rows.
     pub(super) fn paint_runs(
         &self,
@@ -58,6 +72,7 @@ impl<I: Ink<N>, const N: usize> Painter<'_, I, N> {
     /// Fits a patch to the pixels of a rectangle.
     fn fit(&self, order: u32, bounds: Rectangle, patch: &mut Patch<N>) -> Result<(), Misfit> {
         let (shader, ink) = (self.shader, self.ink);
+        bounds.check_angle(shader.view)?;
         let corners = bounds.centres(self.top);
         let angle = ink.angle();
         let mut first = None;

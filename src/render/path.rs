@@ -206,14 +206,19 @@ impl Pen<'_> {
         self.path.junction.clear();
     }
 
-    /// Draws a line between two points, each `(w, w x, w y)`.
+    /// Draws a line between two points, each as [`Place::seen`].
     fn line(&mut self, a: [f64; 3], b: [f64; 3], weight: i32, depth: u32) {
+        if !self.projection.is_flat {
+            let (projection, tolerance) = (self.projection, self.tolerance);
+            let push = &mut |arc: &EdgeArc| self.push(arc);
+            return projection.line((a, b), weight, tolerance, push, DEEPEST);
+        }
         let (width, height) = (self.projection.width, self.projection.height);
         let beyond = |[w, wx, wy]: [f64; 3]| [wx < 0.0, width * w < wx, wy < 0.0, height * w < wy];
         if beyond(a).into_iter().zip(beyond(b)).any(|(a, b)| a && b) || depth > DEEPEST {
             return;
         }
-        if is_level(&[a[0], b[0]]) {
+        if is_level([a[0], b[0]].into_iter()) {
             let point = |[w, wx, wy]: [f64; 3]| (wx / w, wy / w);
             if let Some(arc) = EdgeArc::straight(point(a), point(b), weight) {
                 self.push(&arc);
@@ -253,14 +258,17 @@ impl Pen<'_> {
             return;
         }
         self.path.wedges += 1;
+        let to = &self.projection.continued(*to, from);
         if self.is_beyond(track, from, to) {
             return;
         }
-        let ahead = is_level(&[from.seen[0], to.seen[0]]);
+        let ahead = self.are_ahead(&[from, to]);
         if depth > DEEPEST || (ahead && (from.x - to.x).abs().max((from.y - to.y).abs()) <= SHORT) {
-            if let Some(arc) =
-                EdgeArc::straight((from.x, from.y), (to.x, to.y), track.weight).filter(|_| ahead)
-            {
+            let (from, to) = ((from.x, from.y), (to.x, to.y));
+            if !ahead {
+                let projection = self.projection;
+                projection.around(from, to, track.weight, &mut |arc| self.push(arc));
+            } else if let Some(arc) = EdgeArc::straight(from, to, track.weight) {
                 self.push(&arc);
             }
             return;
@@ -269,10 +277,11 @@ impl Pen<'_> {
         let middle = self
             .projection
             .place(track.quadrant, track.boundary, azimuth);
+        let middle = self.projection.continued(middle, from);
         let arc = if ahead
             && from.azimuth.cosine_to(to.azimuth) >= WIDEST
             && is_even(track.quadrant, from, to)
-            && is_level(&[from.seen[0], middle.seen[0], to.seen[0]])
+            && self.are_ahead(&[from, &middle, to])
         {
             EdgeArc::new(from, &middle, to, track.weight, self.tolerance)
         } else {
@@ -286,9 +295,24 @@ impl Pen<'_> {
         }
     }
 
+    /// Whether an edge may be drawn as one arc between places: ahead of the camera at similar distances, or with no seam
+    /// between them.
+    fn are_ahead(&self, places: &[&Place]) -> bool {
+        if self.projection.is_flat {
+            return is_level(places.iter().map(|place| place.seen[0]));
+        }
+        let at = |place: &Place| (place.x, place.y);
+        let mut pairs = places.windows(2);
+        pairs.all(|pair| self.projection.are_near(at(pair[0]), at(pair[1])))
+    }
+
     /// Whether all of a boundary between two places is beyond one of the picture's sides: see the
     /// [module's page](self).
     fn is_beyond(&self, track: BoundaryWalk<'_>, from: &Place, to: &Place) -> bool {
+        // What is beyond one side of another picture is behind another one.
+        if !self.projection.is_flat {
+            return false;
+        }
         let ([w0, x0, y0], [w1, x1, y1]) = (from.seen, to.seen);
         let (width, height) = (self.projection.width, self.projection.height);
         let beyond = [
@@ -322,6 +346,15 @@ impl Pen<'_> {
 
     /// Adds an arc, if it is in the picture.
     fn push(&mut self, arc: &EdgeArc) {
+        if self.projection.is_flat {
+            self.push_part(arc);
+        } else {
+            let projection = self.projection;
+            projection.in_turns(*arc, |arc| self.push_part(arc));
+        }
+    }
+
+    fn push_part(&mut self, arc: &EdgeArc) {
         let (rows, columns) = (arc.rows(), arc.columns());
         let (width, height) = (self.projection.width, self.projection.height);
         if rows.1 < 0.0 || rows.0 > height || columns.1 < 0.0 || columns.0 > width {
@@ -383,9 +416,9 @@ fn is_even(quadrant: Quadrant, from: &Place, to: &Place) -> bool {
 }
 
 /// Whether places are ahead of the camera, and none is much nearer to its plane than another.
-fn is_level(w: &[f64]) -> bool {
-    let least = w.iter().copied().fold(f64::INFINITY, f64::min);
-    let greatest = w.iter().copied().fold(0.0, f64::max);
+fn is_level(w: impl Iterator<Item = f64> + Clone) -> bool {
+    let least = w.clone().fold(f64::INFINITY, f64::min);
+    let greatest = w.fold(0.0, f64::max);
     least > 0.0 && greatest <= PERSPECTIVE * least
 }
 

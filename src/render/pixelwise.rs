@@ -103,6 +103,7 @@ impl<O: Orbits> Frame<'_, O> {
                         row_done();
                     }
                     data.finish_sky(&mut memory);
+                    self.clear_beyond_the_rim(&data, &mut memory, top);
                     Ok(())
                 })
             }
@@ -122,6 +123,9 @@ impl<O: Orbits> Frame<'_, O> {
         for i in 0..width {
             let place = (i as u32, (top + j) as u32);
             let pixel = j * width + i;
+            if !self.view.shows(centre(place)) {
+                continue;
+            }
             if let Some(sight) = sight(self.scene, self.view, self.orbits, place)? {
                 data.set_sight(band, pixel, &sight);
                 continue;
@@ -135,6 +139,16 @@ impl<O: Orbits> Frame<'_, O> {
             }
         }
         Ok(())
+    }
+
+    /// Clears what of a band, which begins at row `top`, is beyond the rim of a fisheye.
+    fn clear_beyond_the_rim(&self, data: &Data<'_>, band: &mut PlaneRows<'_>, top: usize) {
+        let (width, height) = (self.view.width(), self.view.height() as usize);
+        for j in 0..ROWS_OF_BAND.min(height - top) {
+            let (from, to) = self.view.shown_columns((top + j) as u32);
+            data.clear(band, j, (0, from as usize));
+            data.clear(band, j, (to as usize, width as usize));
+        }
     }
 
     /// The images of stars, band by band.
@@ -179,7 +193,9 @@ impl<O: Orbits> Frame<'_, O> {
             0.0
         };
         let rate = f64::NAN;
-        Ok(sky.sight(pixel, s, Escape { angle, rate }))
+        let (column, row) = centre((i, j));
+        let point = (self.view.x_at(column), self.view.y_at(row));
+        Ok(sky.sight(point, (pixel, s), Escape { angle, rate }))
     }
 
     /// Draws rows of colours: codes of an amplitude of the disk, or of light.
@@ -205,6 +221,10 @@ impl<O: Orbits> Frame<'_, O> {
                 let pixels = row[..3 * width].as_chunks_mut::<3>().0;
                 for (i, (samples, light)) in pixels.iter_mut().zip(light).enumerate() {
                     let place = (i as u32, (top + j) as u32);
+                    if !self.view.shows(centre(place)) {
+                        *samples = [T::default(); 3];
+                        continue;
+                    }
                     *samples = match sight(self.scene, self.view, self.orbits, place)? {
                         Some(_) if colours.is_white => of_light([1.0; 3]),
                         Some(sight) => of_amplitude(amplitude(&sight) as f32),
@@ -260,7 +280,7 @@ pub fn sees(
     orbits: &impl Orbits,
     (i, j): (u32, u32),
 ) -> Result<bool, OrbitError> {
-    Ok(match scene.disk() {
+    Ok(match scene.disk().filter(|_| view.shows(centre((i, j)))) {
         Some(disk) => disk_crossing(disk, view, orbits, view.pixel(i, j))?.is_some(),
         None => false,
     })
@@ -277,7 +297,15 @@ pub fn sight(
     orbits: &impl Orbits,
     (i, j): (u32, u32),
 ) -> Result<Option<Sight>, OrbitError> {
+    if !view.shows(centre((i, j))) {
+        return Ok(None);
+    }
     sight_along(scene, view, orbits, view.pixel(i, j))
+}
+
+/// The centre of a pixel (column, row), in pixels from the picture's left and top.
+fn centre((i, j): (u32, u32)) -> (f64, f64) {
+    (f64::from(i) + 0.5, f64::from(j) + 0.5)
 }
 
 /// Returns what the ray of any point of the picture sees of the disk, like [`sight`].
@@ -310,7 +338,7 @@ pub fn sight_along(
 /// [`FixedStep::disk_hit`]).
 #[inline]
 pub fn sees_in_steps(scene: &Scene, view: &View, method: &FixedStep, (i, j): (u32, u32)) -> bool {
-    meeting_in_steps(scene, view, method, view.pixel(i, j)).is_some()
+    view.shows(centre((i, j))) && meeting_in_steps(scene, view, method, view.pixel(i, j)).is_some()
 }
 
 /// Returns what a pixel (column, row) sees of the disk, like [`sight`], by the steps of [`sees_in_steps`].
@@ -321,6 +349,9 @@ pub fn sight_in_steps(
     method: &FixedStep,
     (i, j): (u32, u32),
 ) -> Option<Sight> {
+    if !view.shows(centre((i, j))) {
+        return None;
+    }
     let pixel = view.pixel(i, j);
     let (order, u) = meeting_in_steps(scene, view, method, pixel)?;
     Some(SightGeometry::new(view).sight(pixel, order, u))

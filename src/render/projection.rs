@@ -9,7 +9,8 @@
 //! (w, w x, w y) = M (κ, cos α, sin α)
 //! ```
 //!
-//! x and y in pixels from the picture's left and top. w > 0 ahead of the camera.
+//! x and y in pixels from the picture's left and top. w > 0 ahead of the camera. Pictures that are not flat need no
+//! matrix: `round.rs` has what differs there.
 //!
 //! # The azimuth within a quarter turn
 //! φ₁ = π/2 is met where cos α = 0. Each half turn of α about that border has one quarter turn of φ₁ on either side.
@@ -23,7 +24,7 @@
 //! and x, the curves' axis, is x̂ in the first quarter turn and 1 − x̂ in the second.
 
 use crate::isoradial::{Boundary, Isoradials};
-use crate::scene::{Affine, View};
+use crate::scene::{self, View};
 
 /// Sine and cosine of β, from 0 to a right angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -101,7 +102,7 @@ pub(super) struct Place {
     /// The curves' axis.
     pub(super) axis: f64,
     pub(super) kappa: f64,
-    /// `(w, w x, w y)`.
+    /// `(w, w x, w y)` in a flat picture, else the direction's parts ahead, right and up.
     pub(super) seen: [f64; 3],
     pub(super) x: f64,
     pub(super) y: f64,
@@ -114,9 +115,11 @@ pub(super) struct Place {
 /// A view, as curves are drawn in it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Projection<'a> {
+    pub(super) view: &'a View,
     pub(super) curves: &'a Isoradials,
-    /// M, row by row.
+    /// M, row by row, of a flat picture.
     matrix: [[f64; 3]; 3],
+    pub(super) is_flat: bool,
     /// `|n·p̂|`.
     n: f64,
     /// D₁, and its size.
@@ -127,13 +130,10 @@ pub(super) struct Projection<'a> {
 }
 
 /// Returns M of the [module's page](self), row by row.
-pub(crate) fn picture_matrix(view: &View) -> [[f64; 3]; 3] {
+fn picture_matrix(view: &View) -> [[f64; 3]; 3] {
     let (width, height) = (f64::from(view.width()), f64::from(view.height()));
-    let (z, ta, tb) = (view.z(), view.ta(), view.tb());
-    let parts = |part: fn(Affine) -> f64| [part(z), part(ta), part(tb)];
-    let w = parts(|affine| affine.at_centre);
-    let right = parts(|affine| affine.per_x);
-    let up = parts(|affine| affine.per_y);
+    let part = |i: usize| view.parts().map(|part| part[i]);
+    let (w, right, up) = (part(0), part(1), part(2));
     let side = view.pixel_side();
     [
         w,
@@ -143,11 +143,13 @@ pub(crate) fn picture_matrix(view: &View) -> [[f64; 3]; 3] {
 }
 
 impl<'a> Projection<'a> {
-    pub(super) fn new(view: &View, curves: &'a Isoradials) -> Self {
+    pub(super) fn new(view: &'a View, curves: &'a Isoradials) -> Self {
         let (width, height) = (f64::from(view.width()), f64::from(view.height()));
         Self {
+            view,
             curves,
             matrix: picture_matrix(view),
+            is_flat: view.lens().projection() == scene::Projection::Perspective,
             n: view.n_p().abs(),
             plane_slope: view.plane_slope(),
             d: view.plane_slope().abs(),
@@ -233,6 +235,21 @@ impl<'a> Projection<'a> {
             quadrant.along * azimuth.cosine,
             -quadrant.across * azimuth.sine,
         ];
+        if !self.is_flat {
+            let (seen, change) = (self.seen_round(direction), self.seen_round(change));
+            let (x, y) = self.round_place(seen);
+            let (dx, dy) = self.round_change(seen, change);
+            return Place {
+                azimuth,
+                axis,
+                kappa,
+                seen,
+                x,
+                y,
+                dx,
+                dy,
+            };
+        }
         let seen = self.apply(direction);
         let [dw, dwx, dwy] = self.apply(change);
         let inverse = 1.0 / seen[0];

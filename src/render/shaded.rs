@@ -17,6 +17,7 @@ use super::shader::Shader;
 use super::sky::{FrameSky, StarImages};
 use super::tiles::{Run, TILE};
 use crate::isoradial::Boundary;
+use crate::scene::View;
 
 /// A band is a row of tiles.
 pub(super) const ROWS_OF_BAND: usize = TILE.1;
@@ -123,6 +124,7 @@ impl<'a> ShadedFrame<'a> {
                 for (row, orders) in scratch.orders.chunks_exact(width).enumerate() {
                     runs_of(orders, NONE, row, &mut scratch.free);
                 }
+                keep_shown(view, top, &mut scratch.free);
                 for shown in curves.orders() {
                     scratch.paint_order(shown.number(), rows, &painter, &mut memory);
                 }
@@ -133,6 +135,7 @@ impl<'a> ShadedFrame<'a> {
             }
             scratch.darken(rows, &painter, sky.as_ref());
             ink.finish(&mut memory, shader, top);
+            painter.clear_beyond_the_rim(rows, &mut memory);
         });
     }
 
@@ -184,6 +187,7 @@ impl ShadedScratch {
             self.band.rows(|cells, row, left| {
                 collect(cells, row, left, *order, runs, partial);
             });
+            keep_shown(painter.shader.view, painter.top, runs);
             painter.paint_runs(*order, rows, &self.runs, memory);
             if sky.is_some() {
                 self.covered.extend_from_slice(&self.runs);
@@ -193,9 +197,15 @@ impl ShadedScratch {
             let width = painter.shader.view.width();
             self.covered.sort_unstable_by_key(|run| (run.row, run.from));
             complement(&self.covered, (width, rows as u32), &mut self.free);
+            keep_shown(painter.shader.view, painter.top, &mut self.free);
             self.paint_sky(rows, painter, sky, memory);
         }
-        let width = painter.shader.view.width() as usize;
+        let view = painter.shader.view;
+        self.partial.retain(|pixel| {
+            let (from, to) = view.shown_columns(painter.top as u32 + pixel.row);
+            (from..to).contains(&pixel.column)
+        });
+        let width = view.width() as usize;
         let beside = |row: usize, column: usize| {
             let light = self.light.get(row * width + column);
             let sky = sky.filter(|sky| sky.sky.shines());
@@ -348,6 +358,11 @@ impl ShadedScratch {
                 orders[row * width + column] = seen(column, row);
             }
         }
+        for (row, orders) in orders.chunks_exact_mut(width).enumerate() {
+            let (from, to) = shader.view.shown_columns((painter.top + row) as u32);
+            orders[..from as usize].fill(NONE);
+            orders[to as usize..].fill(NONE);
+        }
     }
 
     /// Paints the pixels whose centres see an order.
@@ -372,6 +387,15 @@ struct BandSky<'a> {
     sky: &'a FrameSky<'a>,
     stars: &'a StarImages,
     band: usize,
+}
+
+/// Keeps of the runs of a band, which begins at row `top`, what the picture shows: nothing beyond the rim of a fisheye.
+fn keep_shown(view: &View, top: usize, runs: &mut Vec<Run>) {
+    runs.retain_mut(|run| {
+        let (from, to) = view.shown_columns(top as u32 + run.row);
+        (run.from, run.to) = (run.from.max(from), run.to.min(to));
+        run.from < run.to
+    });
 }
 
 /// Collects the pixels of rows that are in no run; runs are sorted and do not overlap.

@@ -52,6 +52,8 @@ const MOST_PARTS: f64 = 32.0;
 /// A ray of the picture.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PlaceRay {
+    /// (X, Y) in the picture.
+    pub(super) point: (f64, f64),
     pub(super) ray: PixelRay,
     /// The length of its transverse part.
     pub(super) s: f64,
@@ -89,10 +91,12 @@ impl<'a> Shader<'a> {
     #[inline(always)]
     pub(super) fn ray(&self, place: (f64, f64)) -> PlaceRay {
         let view = self.view;
-        let ray = view.ray_at(view.x_at(place.0), view.y_at(place.1));
+        let point = (view.x_at(place.0), view.y_at(place.1));
+        let ray = view.ray_at(point.0, point.1);
         let s = ray.transverse();
         let (n, d) = (self.view.n_p().abs() * s, self.view.plane_slope() * ray.ta);
         PlaceRay {
+            point,
             ray,
             s,
             h: (ray.z - self.curves.critical() * s) / s,
@@ -145,17 +149,14 @@ impl<'a> Shader<'a> {
     }
 
     /// Returns [`Self::lambda`] at a distance from a ray's place, in pixels along a unit vector: λ is linear in the
-    /// direction, up to its length.
+    /// direction, up to its length. Within a pixel the direction is nearly linear in the place.
     #[inline(always)]
     pub(super) fn lambda_along(&self, ray: &PlaceRay) -> impl Fn(f64, (f64, f64)) -> f64 + use<> {
         let PixelRay { z, ta, tb } = ray.ray;
         let scale =
             self.view.n_a() / ((z * z + ta * ta + tb * tb).sqrt() * self.view.slope_scale());
-        let (side, change) = (self.view.pixel_side(), self.view.tb());
-        move |distance, (x, y)| {
-            let tb = tb + distance * side * (x * change.per_x - y * change.per_y);
-            tb * scale
-        }
+        let [right, down] = self.view.changes_at(ray.point.0, ray.point.1);
+        move |distance, (x, y)| (tb + distance * (x * right.tb + y * down.tb)) * scale
     }
 
     /// Returns the redshift g of light with the angular momentum `lambda` from the ring at u.

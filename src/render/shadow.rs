@@ -3,7 +3,7 @@
 use core::f64::consts::FRAC_1_SQRT_2;
 
 use super::section::Section;
-use crate::scene::{Affine, PixelRay, View};
+use crate::scene::{PixelRay, View};
 
 /// An edge is taken as straight within a pixel where it bends as a circle of so many pixels or a larger one: what that
 /// leaves out is a chord³/12 over the radius, at most 0.004 of the pixel.
@@ -19,15 +19,15 @@ const LINES: u32 = 16;
 /// but a cone about the direction away from it.
 pub(super) fn share(view: &View, critical: f64, (x, y): (f64, f64)) -> f64 {
     let side = view.pixel_side();
-    let ray = view.ray_at(view.x_at(x), view.y_at(y));
+    let point = (view.x_at(x), view.y_at(y));
+    let ray = view.ray_at(point.0, point.1);
     let s = ray.transverse();
     let f = ray.z - critical * s;
     let is_shadow = f64::from(u8::from(f > 0.0));
-    let change = |part: fn(Affine) -> f64| {
-        let s = (ray.ta * part(view.ta()) + ray.tb * part(view.tb())) / s;
-        (part(view.z()) - critical * s) * side
-    };
-    let (across, down) = (change(|a| a.per_x), change(|a| -a.per_y));
+    let [across, down] = view.changes_at(point.0, point.1).map(|change| {
+        let s = (ray.ta * change.ta + ray.tb * change.tb) / s;
+        change.z - critical * s
+    });
     let radius = 1.0 / ((1.0 + critical * critical).sqrt() * side);
     if radius < STRAIGHT {
         // The slopes of z and s are at most 1.
@@ -54,12 +54,8 @@ pub(super) fn covers(view: &View, critical: f64, (x, y): (f64, f64)) -> bool {
 }
 
 /// Returns the share of a pixel as the mean over lines across the edge, upright or level ones, on each of which it is
-/// exact.
+/// exact but for what bends the lines themselves.
 fn bent_share(view: &View, critical: f64, (x, y): (f64, f64), upright: bool) -> f64 {
-    let along = [view.z(), view.ta(), view.tb()].map(|affine| {
-        let slope = if upright { -affine.per_y } else { affine.per_x };
-        slope * view.pixel_side()
-    });
     let square = critical * critical;
     let product = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] - square * (a[1] * b[1] + a[2] * b[2]);
     let mut sum = 0.0;
@@ -70,8 +66,11 @@ fn bent_share(view: &View, critical: f64, (x, y): (f64, f64), upright: bool) -> 
         } else {
             (x, y + offset)
         };
-        let PixelRay { z, ta, tb } = view.ray_at(view.x_at(x), view.y_at(y));
-        let at = [z, ta, tb];
+        let (x, y) = (view.x_at(x), view.y_at(y));
+        let parts = |PixelRay { z, ta, tb }| [z, ta, tb];
+        let at = parts(view.ray_at(x, y));
+        let along = parts(view.changes_at(x, y)[usize::from(upright)]);
+        let z = at[0];
         // The edge of the cone is where z² − κ² s² is 0, and z has the sign of κ.
         let (a, b, c) = (product(along, along), product(at, along), product(at, at));
         let root = -(b + (b * b - a * c).sqrt().copysign(b));

@@ -1,9 +1,13 @@
 //! The tiles of a band: rectangles of pixels whose quantities are polynomials, and their parts where these do not do.
 
 use super::patch::{Axis, Misfit, Patch};
+use crate::scene::{Projection, View};
 
 /// Columns and rows of a tile: what a patch covers at most. Bands are whole rows of tiles.
 pub(super) const TILE: (usize, usize) = (128, 32);
+
+/// The widest angle of a patch in a picture that is not flat, in radians.
+const WIDEST: f64 = 0.8;
 
 /// Pixels of a row of a band, side by side.
 #[derive(Debug, Clone, Copy)]
@@ -168,6 +172,27 @@ impl Rectangle {
                 Axis::Y => Self { rows: part, ..self },
             }
         })
+    }
+
+    /// Checks that it is no wider angle than polynomials are trusted with: over a large part of a turn the last
+    /// coefficients of a periodic function may be small by chance. Flat pictures have no such tiles.
+    ///
+    /// # Errors
+    /// A [`Misfit`]: the rectangle has to be cut.
+    pub(super) fn check_angle(self, view: &View) -> Result<(), Misfit> {
+        if view.lens().projection() == Projection::Perspective {
+            return Ok(());
+        }
+        let axis = self.longer();
+        let (first, last) = match axis {
+            Axis::X => self.columns,
+            Axis::Y => self.rows,
+        };
+        let angle = (last - first) as f64 * view.pixel_side();
+        if angle > WIDEST && last - first > 1 {
+            return Err(Misfit::TooLong(axis, (angle / WIDEST).ceil() as usize));
+        }
+        Ok(())
     }
 
     /// The axis along which it is longer.

@@ -81,7 +81,7 @@ impl Scene {
         sky: Option<Arc<Sky>>,
         settings: ImageSettings,
     ) -> Result<Self, SceneError> {
-        validate::scene(&camera, radius, disk.as_ref())?;
+        validate::scene(&camera, radius, disk.as_ref(), settings.size)?;
         Ok(Self {
             camera,
             radius,
@@ -112,9 +112,11 @@ impl Scene {
     /// The same scene as a picture of another size; the vertical field of view stays.
     ///
     /// # Errors
-    /// [`SceneError::Value`] for a size that is not allowed.
+    /// [`SceneError::Value`] for a size that is not allowed: an equirectangular picture is twice as wide as high.
     pub fn with_size(mut self, width: u32, height: u32) -> Result<Self, SceneError> {
-        self.settings.size = validate::image_size(i64::from(width), i64::from(height))?;
+        let size = validate::image_size(i64::from(width), i64::from(height))?;
+        validate::shape(self.camera.projection, size)?;
+        self.settings.size = size;
         Ok(self)
     }
 

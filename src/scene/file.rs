@@ -17,7 +17,7 @@ mod camera;
 mod sky;
 mod write;
 
-pub(super) use camera::{CameraTable, Fov, Place};
+pub(super) use camera::{CameraTable, Fov, Place, SPHERE};
 
 /// The whole file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

@@ -69,9 +69,11 @@ mod checked;
 mod error;
 mod file;
 mod layers;
+mod lens;
 mod load;
 mod navigator;
 mod overrides;
+mod projection;
 mod sky;
 mod validate;
 mod values;
@@ -83,8 +85,10 @@ pub use builtin::{Builtin, DEFAULT_SCENE, builtins};
 pub use checked::Scene;
 pub use error::SceneError;
 pub use layers::{Layer, LayerSet};
+pub(crate) use lens::Direction;
 pub use navigator::Navigator;
 pub use overrides::Override;
+pub use projection::Projection;
 pub use sky::{DEFAULT_STAR_RADIUS, Sky, SkyFile, StarSource, Stars};
 pub use validate::{
     FARTHEST_CAMERA, HORIZON_RADIUS, ISCO_RADIUS, MAX_EXPOSURE, MAX_GRID, MAX_IMAGE_SIDE,
@@ -92,4 +96,4 @@ pub use validate::{
     NARROWEST_FOV, WIDEST_DISK,
 };
 pub use values::{Camera, DEFAULT_TOLERANCE, Disk, ImageSize, Light, Tone};
-pub use view::{Affine, PixelRay, View};
+pub use view::{PixelRay, View};

@@ -18,6 +18,7 @@ use glam::DVec3;
 
 use super::angles::{outward_and_up, radius_and_angles, sine_and_cosine};
 use super::checked::Scene;
+use super::projection::Projection;
 use super::validate::{HORIZON_RADIUS, NARROWEST_FOV};
 use super::values::{Camera, Disk};
 use super::vector::{cosine, direction, norm};
@@ -31,8 +32,11 @@ const IN_PLANE: f64 = 16.0 * f64::EPSILON;
 /// The distances from the horizon within which the camera is moved, in Schwarzschild radii.
 const DISTANCES: (f64, f64) = (1e-3, 1e9);
 
-/// The widest field of view, in degrees.
+/// The widest field of view of a flat picture, in degrees.
 const WIDEST_FOV: f64 = 150.0;
+
+/// The widest of a fisheye, in degrees.
+const WIDEST_FISHEYE: f64 = 360.0;
 
 /// Below this sine of the inclination a camera is at a pole, where every azimuth is right.
 const AT_POLE: f64 = 1e-9;
@@ -66,6 +70,7 @@ pub struct Navigator {
     pitch: f64,
     roll: f64,
     fov: f64,
+    projection: Projection,
     disk: Option<Disk>,
 }
 
@@ -103,6 +108,7 @@ impl Navigator {
             pitch,
             roll: 0.0,
             fov: camera.fov_degrees,
+            projection: camera.projection,
             disk: scene.disk().copied(),
         };
         let [_, up, right] = level.axes();
@@ -151,6 +157,7 @@ impl Navigator {
             focus,
             up: up * cos_roll - right * sin_roll,
             fov_degrees: self.fov,
+            projection: self.projection,
         }
     }
 
@@ -231,13 +238,18 @@ impl Navigator {
         self.pitch -= down;
     }
 
-    /// Multiplies the tangent of half the field of view.
+    /// Multiplies the tangent of half the field of view, or a fisheye's whole angle. The whole sphere stays whole.
     pub fn scale_fov(&mut self, factor: f64) {
-        let half = libm::tan(self.fov.to_radians() / 2.0);
-        let fov = 2.0 * libm::atan(half * factor).to_degrees();
+        let (fov, widest) = match self.projection {
+            Projection::Perspective => {
+                let half = libm::tan(self.fov.to_radians() / 2.0);
+                (2.0 * libm::atan(half * factor).to_degrees(), WIDEST_FOV)
+            }
+            Projection::Fisheye => (self.fov * factor, WIDEST_FISHEYE),
+            Projection::Equirectangular => return,
+        };
         // A field of view that was given wider may stay.
-        let widest = WIDEST_FOV.max(self.fov);
-        self.fov = fov.clamp(NARROWEST_FOV, widest);
+        self.fov = fov.clamp(NARROWEST_FOV, widest.max(self.fov));
     }
 
     /// Changes the navigator by as much of a step as leads through no matter. `change` takes the share of the step.

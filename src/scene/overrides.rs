@@ -96,6 +96,11 @@ impl Override {
         for excluded in excluded(&key) {
             put(scene, excluded, None)?;
         }
+        // The scene's own field of view is that of its own projection.
+        if key == "camera.projection" {
+            put(scene, "camera.fov", None)?;
+            put(scene, "camera.fov_horizontal", None)?;
+        }
         put(scene, &key, self.value.clone())
     }
 
@@ -163,7 +168,11 @@ pub(super) fn parse(text: &str, overrides: &[Override]) -> Result<SceneFile, Sce
         }
     }
     let mut scene: Table = toml::from_str(text).map_err(|error| parser_error(&error))?;
-    for this in overrides {
+    // A projection takes the scene's field of view away, but not one that is given beside it.
+    let (projections, others): (Vec<_>, Vec<_>) = overrides
+        .iter()
+        .partition(|this| this.key == "camera.projection");
+    for this in projections.into_iter().chain(others) {
         this.apply(&mut scene)
             .map_err(|error| this.blamed(&error))?;
     }

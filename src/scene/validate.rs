@@ -5,6 +5,8 @@ use std::fmt::Debug;
 use glam::DVec3;
 
 use super::error::SceneError;
+use super::file::SPHERE;
+use super::projection::Projection;
 use super::values::{Camera, Disk, ImageSettings, ImageSize};
 use super::vector::{cosine, direction, norm};
 
@@ -58,16 +60,23 @@ const PARALLEL: f64 = 16.0 * f64::EPSILON;
 ///
 /// # Errors
 /// [`SceneError::Value`] for the first value that is not allowed.
-pub(super) fn scene(camera: &Camera, radius: f64, disk: Option<&Disk>) -> Result<(), SceneError> {
+pub(super) fn scene(
+    camera: &Camera,
+    radius: f64,
+    disk: Option<&Disk>,
+    size: ImageSize,
+) -> Result<(), SceneError> {
     // Finite keyframes can have values between them that are not.
     finite_vector("camera.position", camera.position.to_array())?;
     finite_vector("camera.focus", camera.focus.to_array())?;
     finite_direction("camera.up", camera.up.to_array())?;
     let Some(disk) = disk else {
-        return check_camera(camera, radius);
+        check_camera(camera, radius)?;
+        return shape(camera.projection, size);
     };
     finite_direction("disk.normal", disk.normal.to_array())?;
     check_camera(camera, radius)?;
+    shape(camera.projection, size)?;
     edges(disk.inner, disk.outer)?;
     let is_in_plane = cosine(camera.position, disk.normal).abs() <= IN_PLANE;
     SceneError::check(
@@ -171,20 +180,59 @@ fn check_camera(camera: &Camera, radius: f64) -> Result<(), SceneError> {
         camera.up.to_array(),
         "this direction is parallel to the view from camera.position to camera.focus; give another one",
     )?;
-    fov("camera.fov", camera.fov_degrees)
+    fov("camera.fov", camera.fov_degrees, camera.projection)
 }
 
 /// Checks a field of view, in degrees.
 ///
 /// # Errors
 /// [`SceneError::Value`]
-pub(super) fn fov(key: &'static str, degrees: f64) -> Result<(), SceneError> {
+pub(super) fn fov(
+    key: &'static str,
+    degrees: f64,
+    projection: Projection,
+) -> Result<(), SceneError> {
+    match projection {
+        Projection::Perspective => SceneError::check(
+            (NARROWEST_FOV..180.0).contains(&degrees),
+            key,
+            degrees,
+            format_args!(
+                "a flat picture's field of view is at least {NARROWEST_FOV:e} and below 180 degrees; \
+                 camera.projection = \"fisheye\" goes up to 360"
+            ),
+        ),
+        Projection::Fisheye => SceneError::check(
+            (NARROWEST_FOV..=360.0).contains(&degrees),
+            key,
+            degrees,
+            format_args!(
+                "a fisheye's whole angle is at least {NARROWEST_FOV:e} and at most 360 degrees"
+            ),
+        ),
+        Projection::Equirectangular => SceneError::check(
+            degrees == SPHERE,
+            key,
+            degrees,
+            "an equirectangular picture is 180 degrees high; leave out the field of view",
+        ),
+    }
+}
+
+/// Checks that a picture has the shape that its projection needs.
+///
+/// # Errors
+/// [`SceneError::Value`]
+pub(super) fn shape(projection: Projection, size: ImageSize) -> Result<(), SceneError> {
+    let ImageSize { width, height } = size;
     SceneError::check(
-        (NARROWEST_FOV..180.0).contains(&degrees),
-        key,
-        degrees,
+        projection != Projection::Equirectangular || u64::from(width) == 2 * u64::from(height),
+        "image.width",
+        width,
         format_args!(
-            "a flat picture's field of view is at least {NARROWEST_FOV:e} and below 180 degrees"
+            "an equirectangular picture is twice as wide as high, and image.height = {height}; write \
+             image.width = {}",
+            2 * u64::from(height)
         ),
     )
 }

@@ -5,6 +5,7 @@ use serde::Deserialize;
 
 use super::angles::{outward_and_up, rolled_up};
 use super::layers::LayerSet;
+use super::projection::Projection;
 
 /// The largest error of an edge where none is given, in pixels: no 8-bit picture shows a thousandth of a pixel.
 pub const DEFAULT_TOLERANCE: f64 = 1e-3;
@@ -29,8 +30,10 @@ pub struct Camera {
     pub focus: DVec3,
     /// The direction that is up in the picture, of any length.
     pub up: DVec3,
-    /// The vertical field of view, in degrees.
+    /// The vertical field of view, in degrees: of a fisheye its whole angle, of an equirectangular picture 180.
     pub fov_degrees: f64,
+    /// How directions become places in the picture.
+    pub projection: Projection,
 }
 
 impl Camera {
@@ -41,6 +44,7 @@ impl Camera {
             focus: DVec3::ZERO,
             up: DVec3::Z,
             fov_degrees,
+            projection: Projection::Perspective,
         }
     }
 

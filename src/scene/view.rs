@@ -3,12 +3,13 @@
 //! # Derivation
 //!
 //! The camera is a static observer at P, `r = |P|`, `p̂ = P/r`, and looks at F. With `V = F − P`, `L = |V|`:
-//! `f = V/L`, `right = f × up` normalised, `true_up = right × f`. The picture's point (X, Y) is seen in the direction
-//! `d = f + right X + true_up Y`. Of a direction only its inward part `z = −d·p̂` and its part across p̂, `t = d + z
-//! p̂`, are needed: the ray moves in the plane of p̂ and t, and starts with `du/dφ = u0 √(1 − u0) z/s`, `s = |t|`.
+//! `f = V/L`, `right = f × up` normalised, `true_up = right × f`. The [lens](super::lens) tells in which direction the
+//! picture's point (X, Y) is seen, by its parts along f, right and `true_up`: `d = f + X right + Y true_up` in perspective.
+//! Of a direction d only its inward part `z = −d·p̂` and its part across p̂, `t = d + z p̂`, are needed: the ray moves in
+//! the plane of p̂ and t, and starts with `du/dφ = u0 √(1 − u0) z/s`, `s = |t|`.
 //!
 //! t is given in a basis (â, b̂) of the plane across p̂: â is along the part across p̂ of the disk's unit normal n,
-//! `b̂ = p̂ × â`. So `n·b̂ = 0` and `n·t = (n·â) t_a`; z, `t_a` and `t_b` are affine in (X, Y).
+//! `b̂ = p̂ × â`. So `n·b̂ = 0` and `n·t = (n·â) t_a`; z, `t_a` and `t_b` are linear in d's three parts.
 //!
 //! # Precision
 //!
@@ -19,32 +20,18 @@
 //!   an error of ε min(|F|, L)/L.
 //! * right and `true_up` are ⟂ V, so `right·P = right·F` and `right·p̂ = right·F/r`, small where F is near the hole.
 
+use core::ops::Mul;
+
 use glam::DVec3;
 
 use super::checked::Scene;
+use super::lens::{Direction, Lens};
+use super::projection::Projection;
 use super::vector::{cosine, direction, norm, scaled, unit_cross};
 
 /// n and p̂ are parallel where `|n × p̂|` is at most this: the rest is the rounding of the cross product and of the
 /// norms, and gives â no direction. Taking `n·â` as 0 there changes an angle φ₁ by at most this.
 const PARALLEL: f64 = 4.0 * f64::EPSILON;
-
-/// A quantity that is affine in a picture's coordinates: `at_centre + per_x X + per_y Y`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Affine {
-    /// The value at the picture's centre, X = Y = 0.
-    pub at_centre: f64,
-    /// The change with X.
-    pub per_x: f64,
-    /// The change with Y.
-    pub per_y: f64,
-}
-
-impl Affine {
-    /// The value at (x, y), summed in the order of the fields, x before y.
-    pub fn at(self, x: f64, y: f64) -> f64 {
-        self.at_centre + self.per_x * x + self.per_y * y
-    }
-}
 
 /// The direction of a pixel in the frame of the hole, of arbitrary length.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,6 +45,16 @@ pub struct PixelRay {
 }
 
 impl PixelRay {
+    /// The ray with parts that are linear in a direction's: z, `t_a` and `t_b`, each by its factors.
+    #[inline(always)]
+    fn of([z, ta, tb]: [Direction; 3], direction: Direction) -> Self {
+        Self {
+            z: dot(z, direction),
+            ta: dot(ta, direction),
+            tb: dot(tb, direction),
+        }
+    }
+
     /// `s = √(ta² + tb²)`, the transverse part's length. It is 0 for a radial ray, which has no orbital plane.
     pub fn transverse(self) -> f64 {
         (self.ta * self.ta + self.tb * self.tb).sqrt()
@@ -77,13 +74,9 @@ pub struct View {
     outward: DVec3,
     across: DVec3,
     level: DVec3,
-    z: Affine,
-    ta: Affine,
-    tb: Affine,
-    width: u32,
-    height: u32,
-    /// Half a pixel's side in X and Y, `tan(fov/2)/H`.
-    half_pixel: f64,
+    /// The factors of a direction's parts ahead, right and up in z, `t_a` and `t_b`.
+    parts: [Direction; 3],
+    lens: Lens,
 }
 
 impl View {
@@ -133,11 +126,7 @@ impl View {
         };
         let b = direction(p.cross(a));
 
-        let across = |e: DVec3| Affine {
-            at_centre: shorter.dot(e) / distance,
-            per_x: right.dot(e),
-            per_y: true_up.dot(e),
-        };
+        let across = |e: DVec3| [shorter.dot(e) / distance, right.dot(e), true_up.dot(e)];
         let u0 = 1.0 / radius;
         Self {
             radius,
@@ -150,16 +139,8 @@ impl View {
             outward: p,
             across: a,
             level: b,
-            z: Affine {
-                at_centre: -f.dot(p),
-                per_x: -right_p,
-                per_y: -true_up_p,
-            },
-            ta: across(a),
-            tb: across(b),
-            width: image.width,
-            height: image.height,
-            half_pixel: libm::tan(camera.fov_degrees.to_radians() / 2.0) / f64::from(image.height),
+            parts: [[-f.dot(p), -right_p, -true_up_p], across(a), across(b)],
+            lens: Lens::new(camera, image),
         }
     }
 
@@ -216,55 +197,107 @@ impl View {
         if self.n_p > 0.0 { -self.n_a } else { self.n_a }
     }
 
-    /// The inward part z as a function of (X, Y).
-    pub fn z(&self) -> Affine {
-        self.z
+    /// The factors of a direction's parts ahead of the camera, to its right and up: in z, in `t_a` and in `t_b`.
+    pub(crate) fn parts(&self) -> [Direction; 3] {
+        self.parts
     }
 
-    /// The transverse part along â as a function of (X, Y).
-    pub fn ta(&self) -> Affine {
-        self.ta
-    }
-
-    /// The transverse part along b̂ as a function of (X, Y).
-    pub fn tb(&self) -> Affine {
-        self.tb
+    /// The camera's projection, for this picture.
+    pub(crate) fn lens(&self) -> &Lens {
+        &self.lens
     }
 
     /// The picture's width, in pixels.
     pub fn width(&self) -> u32 {
-        self.width
+        self.lens.size().0
     }
 
     /// The picture's height, in pixels.
     pub fn height(&self) -> u32 {
-        self.height
+        self.lens.size().1
     }
 
     /// The side of a pixel in X and Y.
     pub fn pixel_side(&self) -> f64 {
-        2.0 * self.half_pixel
+        self.lens.pixel_side()
     }
 
-    /// X at `column` pixels from the picture's left edge, `(2 column − W) tan(fov/2)/H`; pixel i's centre is at
-    /// `i + ½`, its sides are at i and `i + 1`. `x_at(W − column)` is exactly `−x_at(column)`.
+    /// X at `column` pixels from the picture's left edge, `(2 column − W) h/H`, where h is `tan(fov/2)` in perspective,
+    /// `fov/2` of a fisheye and π/2 for the whole sphere. Pixel i's centre is at `i + ½`, its sides are at i and
+    /// `i + 1`. `x_at(W − column)` is exactly `−x_at(column)`.
     pub fn x_at(&self, column: f64) -> f64 {
-        (2.0 * column - f64::from(self.width)) * self.half_pixel
+        self.lens.x_at(column)
     }
 
-    /// Y at `row` pixels from the picture's top edge, `(H − 2 row) tan(fov/2)/H`; pixel j's centre is at `j + ½`, its
-    /// sides are at j and `j + 1`. `y_at(H − row)` is exactly `−y_at(row)`.
+    /// Y at `row` pixels from the picture's top edge, `(H − 2 row) h/H`; pixel j's centre is at `j + ½`, its sides are
+    /// at j and `j + 1`. `y_at(H − row)` is exactly `−y_at(row)`.
     pub fn y_at(&self, row: f64) -> f64 {
-        (f64::from(self.height) - 2.0 * row) * self.half_pixel
+        self.lens.y_at(row)
     }
 
     /// The ray seen at (X, Y) of the picture.
+    #[inline(always)]
     pub fn ray_at(&self, x: f64, y: f64) -> PixelRay {
-        PixelRay {
-            z: self.z.at(x, y),
-            ta: self.ta.at(x, y),
-            tb: self.tb.at(x, y),
+        PixelRay::of(self.parts, self.lens.direction(x, y))
+    }
+
+    /// Returns whether something is seen at a place, in pixels from the picture's left and top: beyond the rim of a
+    /// fisheye there is nothing. The rim is a circle that the picture's upper and lower sides touch.
+    #[inline]
+    pub fn shows(&self, (column, row): (f64, f64)) -> bool {
+        if self.lens.projection() != Projection::Fisheye {
+            return true;
         }
+        let (width, height) = (f64::from(self.width()), f64::from(self.height()));
+        // Exact for the centres of pixels.
+        let (x, y) = (2.0 * column - width, 2.0 * row - height);
+        x * x + y * y <= height * height
+    }
+
+    /// Returns the pixels of a row whose centres [show](Self::shows) something: the first column, and the one after the
+    /// last.
+    pub fn shown_columns(&self, row: u32) -> (u32, u32) {
+        let (width, height) = (self.width(), self.height());
+        if self.lens.projection() != Projection::Fisheye {
+            return (0, width);
+        }
+        let from_middle = f64::from(row) + 0.5 - 0.5 * f64::from(height);
+        let radius = 0.5 * f64::from(height);
+        let half = ((radius - from_middle) * (radius + from_middle)).sqrt();
+        let shows = |column: u32| self.shows((f64::from(column) + 0.5, f64::from(row) + 0.5));
+        // The first column, up to rounding.
+        let mut from = ((0.5 * f64::from(width) - half).max(0.0) as u32).saturating_sub(1);
+        while from < width.div_ceil(2) && !shows(from) {
+            from += 1;
+        }
+        (from, width - from)
+    }
+
+    /// Returns a ray's direction, as long as the ray: its parts ahead of the camera, to its right and up. They are at
+    /// right angles, so that the inverse is the transpose.
+    #[inline(always)]
+    pub fn direction_of(&self, PixelRay { z, ta, tb }: PixelRay) -> [f64; 3] {
+        let [of_z, of_ta, of_tb] = self.parts;
+        core::array::from_fn(|i| of_z[i] * z + of_ta[i] * ta + of_tb[i] * tb)
+    }
+
+    /// Returns where a ray is seen, in pixels from the picture's left and top, whether that is in the picture or not;
+    /// `None` behind a flat picture. The inverse of [`Self::ray_at`].
+    #[inline]
+    pub fn place_of(&self, ray: PixelRay) -> Option<(f64, f64)> {
+        let (x, y) = self.lens.point(self.direction_of(ray))?;
+        let side = self.pixel_side();
+        let (width, height) = (f64::from(self.width()), f64::from(self.height()));
+        Some((0.5 * width + x / side, 0.5 * height - y / side))
+    }
+
+    /// How the ray at (X, Y) changes from a pixel to the next: to the right, and down.
+    #[inline(always)]
+    pub fn changes_at(&self, x: f64, y: f64) -> [PixelRay; 2] {
+        let side = self.pixel_side();
+        let [with_x, with_y] = self.lens.changes(x, y);
+        let per_pixel = |change, side| PixelRay::of(self.parts, change) * side;
+        [per_pixel(with_x, side), per_pixel(with_y, -side)]
     }
 
     /// The ray seen at the centre of pixel (i, j), i counted from the left, j from the top.
@@ -294,6 +327,24 @@ impl View {
             0.0
         }
     }
+}
+
+impl Mul<f64> for PixelRay {
+    type Output = Self;
+
+    fn mul(self, factor: f64) -> Self {
+        Self {
+            z: self.z * factor,
+            ta: self.ta * factor,
+            tb: self.tb * factor,
+        }
+    }
+}
+
+/// Returns a product, summed in the order of the parts.
+#[inline(always)]
+fn dot(a: Direction, b: Direction) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[cfg(test)]

@@ -40,6 +40,7 @@ mod masks;
 mod needs;
 mod outline;
 mod photon_rings;
+mod projections;
 mod renderer;
 mod sky_directions;
 mod sky_extremes;

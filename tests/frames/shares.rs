@@ -12,7 +12,7 @@ use core::f64::consts::{PI, TAU};
 
 use darkness::isoradial::{CurveSpec, Edge, Isoradials};
 use darkness::orbit::path::SweptAngles;
-use darkness::scene::{Affine, Scene, View};
+use darkness::scene::{PixelRay, Scene, View};
 use rayon::prelude::*;
 
 /// How far a chord may be from the edge it stands for, in pixels: a pixel's share is off by no more than that times the
@@ -136,23 +136,16 @@ impl Picture {
         (middle + least, middle + most)
     }
 
-    fn ray(&self, column: f64, row: f64) -> darkness::scene::PixelRay {
+    fn ray(&self, column: f64, row: f64) -> PixelRay {
         self.view
             .ray_at(self.view.x_at(column), self.view.y_at(row))
     }
 
-    /// A direction (inward, along â, along b̂) in the picture's coordinates: f, right and up are at right angles, so
-    /// that the inverse is the transpose.
+    /// A direction (inward, along â, along b̂) in the picture's coordinates, as a unit vector.
     fn place(&self, [z, a, b]: [f64; 3]) -> [f64; 3] {
         let length = (z * z + a * a + b * b).sqrt();
-        let (of_z, of_a, of_b) = (self.view.z(), self.view.ta(), self.view.tb());
-        let part =
-            |part: fn(Affine) -> f64| (part(of_z) * z + part(of_a) * a + part(of_b) * b) / length;
-        [
-            part(|affine| affine.at_centre),
-            part(|affine| affine.per_x),
-            part(|affine| affine.per_y),
-        ]
+        let ray = PixelRay { z, ta: a, tb: b };
+        self.view.direction_of(ray).map(|part| part / length)
     }
 
     /// κ of the outer and the inner edge in a direction across the line to the hole, that has the part `cosine` along

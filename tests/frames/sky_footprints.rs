@@ -5,7 +5,7 @@ use core::f64::consts::PI;
 use darkness::Renderer;
 use darkness::isoradial::EscapeCurve;
 use darkness::orbit::exact::Exact;
-use darkness::scene::{Camera, Disk, Layer, LayerSet, Light, Scene, Sky, SkyFile, View};
+use darkness::scene::{Camera, Disk, Layer, LayerSet, Light, PixelRay, Scene, Sky, SkyFile, View};
 use darkness::sky::{Orientation, Panorama, SkySource, direction};
 use glam::DVec3;
 
@@ -70,17 +70,10 @@ fn the_axes_of_footprints_are_the_differences_of_exact_rays() {
 
 /// Where the hole is in a picture.
 fn hole(view: &View) -> Option<(f64, f64)> {
-    // t is 0 where both of its parts are.
-    let (a, b) = (view.ta(), view.tb());
-    let determinant = a.per_x * b.per_y - a.per_y * b.per_x;
-    let x = (a.per_y * b.at_centre - b.per_y * a.at_centre) / determinant;
-    let y = (b.per_x * a.at_centre - a.per_x * b.at_centre) / determinant;
-    (view.z().at(x, y) > 0.0).then(|| {
-        let side = view.pixel_side();
-        (
-            0.5 * f64::from(view.width()) + x / side,
-            0.5 * f64::from(view.height()) - y / side,
-        )
+    view.place_of(PixelRay {
+        z: 1.0,
+        ta: 0.0,
+        tb: 0.0,
     })
 }
 

@@ -8,10 +8,13 @@ use darkness::isoradial::EscapeCurve;
 use darkness::orbit::exact::Exact;
 use darkness::render::batch::{DrawnFrame, FrameError};
 use darkness::render::{Form, Pixels};
-use darkness::scene::{Animation, Camera, ImageSize, Layer, LayerSet, Scene, Sky, SkyFile, View};
+use darkness::scene::{
+    Animation, Camera, ImageSize, Layer, LayerSet, Projection, Scene, Sky, SkyFile, View,
+};
 use darkness::sky::{Panorama, SkySource, place};
 
 use crate::noise::{Random, one_over_f};
+use crate::projections::seen_by;
 use crate::tables::table;
 
 /// Rays a side of a pixel.
@@ -40,6 +43,12 @@ fn scene(position: [f64; 3], focus: [f64; 3], fov: f64, (width, height): (u32, u
         ..Camera::at(position, fov)
     };
     Scene::without_disk(camera, sky(), ImageSize { width, height }).unwrap()
+}
+
+/// The same from near the hole, as a fisheye.
+fn fisheye(fov: f64) -> Scene {
+    let scene = scene([3.0, 1.0, 0.4], [0.0; 3], 60.0, (96, 54));
+    seen_by(&scene, Projection::Fisheye, fov, 54)
 }
 
 /// The linear light of a scene.
@@ -101,15 +110,25 @@ fn a_pixel_is_the_mean_of_many_rays() {
             "pole",
             scene([30.0, 0.0, 4.0], [30.0, 0.0, 14.0], 40.0, (96, 54)),
         ),
+        ("dome", fisheye(180.0)),
+        ("all round", fisheye(360.0)),
+        (
+            "sphere",
+            seen_by(&fisheye(1.0), Projection::Equirectangular, 180.0, 54),
+        ),
     ] {
+        let width = scene.image().width;
         let view = View::new(&scene);
         let curve = EscapeCurve::new(view.u0(), view.slope_scale(), &Exact);
         let found = light(&scene, &source);
         let (mut sum, mut worst, mut count) = (0.0, (0.0_f64, (0, 0)), 0.0);
         for j in (0..54).step_by(3) {
-            for i in (0..96).step_by(3) {
+            for i in (0..width).step_by(3) {
+                if !view.shows((f64::from(i) + 0.5, f64::from(j) + 0.5)) {
+                    continue;
+                }
                 let truth = of_rays(&view, &curve, panorama, (i, j));
-                let pixel = found[(j * 96 + i) as usize];
+                let pixel = found[(j * width + i) as usize];
                 for (found, truth) in pixel.iter().zip(truth) {
                     let off = f64::from(*found) - truth;
                     sum += off * off;

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::super::destination::Destination;
 use super::super::frame_range::FrameRange;
-use super::super::misuse::misuse;
+use super::super::misuse::{check_flat, misuse};
 use super::super::progress::{Report, duration};
 use super::super::stdio::print;
 use super::super::threads::start_threads;
@@ -55,6 +55,7 @@ pub(super) fn run(
     }
     let number = frames.last();
     let scene = animation.check(number)?;
+    check_flat(&scene, "the disk's outline")?;
     if scene.disk().is_none() {
         return Err(misuse(
             "a .svg file holds the outline of the disk, and this scene has none; write a .png or .exr file",

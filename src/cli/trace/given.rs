@@ -69,6 +69,11 @@ pub(super) fn rays_of_pixels(
                 height - 1
             )));
         }
+        if !view.shows((f64::from(i) + 0.5, f64::from(j) + 0.5)) {
+            return Err(misuse(format!(
+                "--pixel {i},{j} is beyond the fisheye's rim, where there is no ray; choose one nearer to the centre"
+            )));
+        }
         let pixel = view.pixel(i, j);
         let across = a * pixel.ta + b * pixel.tb;
         Ok(ListedRay {

@@ -15,6 +15,9 @@ pub(super) fn pointed(scene: &Scene, (x, y): (f64, f64)) -> Option<String> {
         return None;
     }
     let place = (x as u32, y as u32);
+    if !view.shows((f64::from(place.0) + 0.5, f64::from(place.1) + 0.5)) {
+        return None;
+    }
     if let Some(sight) = pixelwise::sight(scene, &view, &Exact, place).ok()? {
         let mut text = format!(
             "disk: order {}, radius {:.4}, azimuth {:.2}°, redshift {:.4}",

@@ -101,6 +101,7 @@ impl Tiled<NODES> for DirectionTiles<'_, '_, '_> {
 
     fn fit(&mut self, bounds: Rectangle, patch: &mut Patch<NODES>) -> Result<(), Misfit> {
         let sky = self.sky;
+        bounds.check_angle(sky.view())?;
         let mut first = None;
         let evaluate = |at, values: &mut [f64; _]| {
             let Some(sight) = sky.at(at) else {

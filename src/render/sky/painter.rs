@@ -63,8 +63,9 @@ impl<'a> SkyPainter<'a> {
         if seen <= 0.0 {
             return [0.0; 3];
         }
-        let ray = view.ray_at(view.x_at(x), view.y_at(y));
-        let (across, down) = outward(view, ray, ray.transverse());
+        let point = (view.x_at(x), view.y_at(y));
+        let ray = view.ray_at(point.0, point.1);
+        let (across, down) = outward(view, point, (ray, ray.transverse()));
         let length = (across * across + down * down).sqrt();
         let (across, down) = if length > 0.0 {
             (across / length, down / length)
@@ -146,6 +147,7 @@ impl Tiled<NODES> for SkyTiles<'_, '_, '_> {
 
     fn fit(&mut self, bounds: Rectangle, patch: &mut Patch<NODES>) -> Result<(), Misfit> {
         let shader = &self.painter.shader;
+        bounds.check_angle(shader.view)?;
         let corners = bounds.centres(self.top);
         let middle = (
             0.5 * (corners.0.0 + corners.1.0),

@@ -17,7 +17,7 @@ use glam::DVec3;
 
 use crate::isoradial::{Escape, EscapeCurve};
 use crate::render::tiles::Rectangle;
-use crate::scene::{Affine, PixelRay, Scene, View};
+use crate::scene::{PixelRay, Scene, View};
 use crate::sky::Orientation;
 
 /// Closer than this to straight away from the hole, as a sine, all directions about it change alike.
@@ -39,6 +39,8 @@ pub(in crate::render) struct SkyShader<'a> {
 /// What a ray sees of the sky.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::render) struct SkySight {
+    /// (X, Y) in the picture.
+    point: (f64, f64),
     ray: PixelRay,
     s: f64,
     escape: Escape,
@@ -68,6 +70,11 @@ impl<'a> SkyShader<'a> {
         }
     }
 
+    /// The view whose rays these are.
+    pub(in crate::render) fn view(&self) -> &'a View {
+        self.view
+    }
+
     /// Returns a direction of the sky's axes in those of the scene.
     pub(in crate::render) fn in_scene(&self, direction: DVec3) -> DVec3 {
         self.orientation.from_sky(direction)
@@ -81,15 +88,21 @@ impl<'a> SkyShader<'a> {
     /// Returns what is seen at a place, in pixels from the picture's left and its top; `None` in the hole's shadow.
     #[inline]
     pub(in crate::render) fn at(&self, (x, y): (f64, f64)) -> Option<SkySight> {
-        let ray = self.view.ray_at(self.view.x_at(x), self.view.y_at(y));
+        let point = (self.view.x_at(x), self.view.y_at(y));
+        let ray = self.view.ray_at(point.0, point.1);
         let s = ray.transverse();
         let escape = self.curve.at(ray.z, s)?;
-        Some(self.sight(ray, s, escape))
+        Some(self.sight(point, (ray, s), escape))
     }
 
-    /// Returns what a ray that sweeps a known angle sees.
+    /// Returns what the ray at (X, Y) sees, s the length of its transverse part, if it sweeps a known angle.
     #[inline]
-    pub(in crate::render) fn sight(&self, ray: PixelRay, s: f64, escape: Escape) -> SkySight {
+    pub(in crate::render) fn sight(
+        &self,
+        point: (f64, f64),
+        (ray, s): (PixelRay, f64),
+        escape: Escape,
+    ) -> SkySight {
         let (sine, cosine) = libm::sincos(escape.angle);
         let [p, a, b] = self.axes;
         let direction = if s > 0.0 {
@@ -98,6 +111,7 @@ impl<'a> SkyShader<'a> {
             p
         };
         SkySight {
+            point,
             ray,
             s,
             escape,
@@ -110,13 +124,11 @@ impl<'a> SkyShader<'a> {
     /// Returns how the direction changes from pixel to pixel.
     #[inline]
     pub(in crate::render) fn footprint(&self, sight: &SkySight) -> Footprint {
-        let (view, [p, a, b]) = (self.view, self.axes);
+        let [p, a, b] = self.axes;
         let PixelRay { z, ta, tb } = sight.ray;
-        let side = view.pixel_side();
         let length2 = z * z + sight.s * sight.s;
-        let change = |part: fn(Affine) -> f64| {
-            let dz = part(view.z()) * side;
-            let (da, db) = (part(view.ta()) * side, part(view.tb()) * side);
+        let change = |change: PixelRay| {
+            let (dz, da, db) = (change.z, change.ta, change.tb);
             if sight.s <= AXIS * -z {
                 return (a * da + b * db) * (sight.escape.rate / -z);
             }
@@ -128,14 +140,15 @@ impl<'a> SkyShader<'a> {
             let outward = (a * cos_a + b * sin_a) * sight.cosine - p * sight.sine;
             outward * turn + (b * cos_a - a * sin_a) * across
         };
+        let [along_x, along_y] = self.view.changes_at(sight.point.0, sight.point.1);
         Footprint {
-            along_x: change(|affine| affine.per_x),
-            along_y: change(|affine| -affine.per_y),
+            along_x: change(along_x),
+            along_y: change(along_y),
         }
     }
 
     /// Whether a rectangle of pixels lies in the hole's shadow, as far as its middle tells: over a distance in the
-    /// picture's plane `z − κ_c s` changes by at most `√(1 + κ_c²)` times that.
+    /// picture, in X and Y, `z − κ_c s` changes by at most `√(1 + κ_c²)` times that.
     pub(in crate::render) fn is_in_shadow(&self, bounds: Rectangle, top: usize) -> bool {
         let ((left, upper), (right, lower)) = bounds.centres(top);
         let (width, height) = (right - left + 1.0, lower - upper + 1.0);
@@ -161,21 +174,23 @@ impl<'a> SkyShader<'a> {
 
     /// Returns how the angle from the hole's direction changes from pixel to pixel, to the right and down.
     pub(super) fn outward(&self, sight: &SkySight) -> (f64, f64) {
-        outward(self.view, sight.ray, sight.s)
+        outward(self.view, sight.point, (sight.ray, sight.s))
     }
 }
 
-/// Returns how a ray's angle from the hole's direction changes from pixel to pixel, to the right and down.
-pub(super) fn outward(view: &View, PixelRay { z, ta, tb }: PixelRay, s: f64) -> (f64, f64) {
-    let scale = view.pixel_side() / (z * z + s * s);
-    let change = |part: fn(Affine) -> f64| {
-        if s == 0.0 {
-            return 0.0;
-        }
-        let ds = (ta * part(view.ta()) + tb * part(view.tb())) / s;
-        (z * ds - s * part(view.z())) * scale
-    };
-    (change(|a| a.per_x), change(|a| -a.per_y))
+/// Returns how the angle from the hole's direction changes from pixel to pixel, to the right and down, for the ray at
+/// (X, Y), s the length of its transverse part.
+pub(super) fn outward(view: &View, point: (f64, f64), (ray, s): (PixelRay, f64)) -> (f64, f64) {
+    if s == 0.0 {
+        return (0.0, 0.0);
+    }
+    let PixelRay { z, ta, tb } = ray;
+    let length2 = z * z + s * s;
+    let [across, down] = view.changes_at(point.0, point.1).map(|change| {
+        let ds = (ta * change.ta + tb * change.tb) / s;
+        (z * ds - s * change.z) / length2
+    });
+    (across, down)
 }
 
 /// Returns how the place of a direction changes with it.

@@ -21,7 +21,7 @@ use rayon::prelude::*;
 use super::shader::SkyShader;
 use crate::isoradial::{EscapeCurve, Image};
 use crate::render::frame::Threads;
-use crate::scene::View;
+use crate::scene::{PixelRay, Projection, View};
 use crate::sky::{Star, StarField};
 
 /// Brighter images count as this bright, so that sums of 32 bits stay finite.
@@ -85,11 +85,11 @@ impl StarImages {
     ) {
         let stars = field.stars.chunks(CHUNK).zip(seen.lights.chunks(CHUNK));
         self.chunks.resize_with(stars.len(), Vec::new);
-        let projection = Projection::new(seen.shader.view, seen.shader.curve);
+        let places = ImagePlaces::new(seen.shader.view, seen.shader.curve);
         let find = |stars: &[Star], lights: &[[f32; 3]], splats: &mut Vec<Splat>| {
             splats.clear();
             for (star, light) in stars.iter().zip(lights) {
-                seen.images(star, *light, &projection, splats);
+                seen.images(star, *light, &places, splats);
             }
         };
         if threads == Threads::All {
@@ -181,11 +181,10 @@ impl StarImages {
 /// A band's number, its first row in the picture, and its number of rows.
 pub(in crate::render) type BandPlace = (usize, usize, usize);
 
-/// Returns the solid angle of a pixel in the picture's centre over that of a pixel, `(1 + X² + Y²)^{3/2}`.
+/// Returns the solid angle of a pixel in the picture's centre over that of a pixel.
 fn over_solid_angle(view: &View, column: usize, row: usize) -> f32 {
     let (x, y) = (view.x_at(column as f64 + 0.5), view.y_at(row as f64 + 0.5));
-    let square = 1.0 + x * x + y * y;
-    (square * square.sqrt()) as f32
+    (1.0 / view.lens().solid_angle(x, y)) as f32
 }
 
 impl Splat {
@@ -204,15 +203,15 @@ impl StarView<'_> {
         &self,
         star: &Star,
         light: [f32; 3],
-        projection: &Projection,
+        places: &ImagePlaces<'_>,
         splats: &mut Vec<Splat>,
     ) {
         let [p, a, b] = self.shader.axes();
         let direction = star.direction;
         let (along, across) = (direction.dot(p), (direction.dot(a), direction.dot(b)));
         let sine = (across.0 * across.0 + across.1 * across.1).sqrt();
-        let first = usize::from(!projection.shows_first(along));
-        if first > projection.last {
+        let first = usize::from(!places.shows_first(along));
+        if first > places.last {
             return;
         }
         let theta = libm::atan2(sine, along);
@@ -223,17 +222,17 @@ impl StarView<'_> {
             (1.0, 0.0)
         };
         let brightest = light.iter().fold(0.0_f32, |most, c| most.max(c.abs()));
-        let brightest = f64::from(brightest) / projection.solid_angle;
+        let brightest = f64::from(brightest) / places.solid_angle;
         let spread = sine.max(0.5 * self.radius);
         let share = ((theta * (SHARES as f64 / PI)) as usize).min(SHARES - 1);
-        for order in first..=projection.last {
+        for order in first..=places.last {
             // Odd orders come the other way about the hole.
             let share = if order % 2 == 0 {
                 share
             } else {
                 SHARES - 1 - share
             };
-            let most = projection.most[order][share];
+            let most = places.most[order][share];
             if brightest * most < self.faintest * spread {
                 return;
             }
@@ -244,7 +243,7 @@ impl StarView<'_> {
                 (turns + TAU - theta, (-side.0, -side.1))
             };
             let image = self.shader.curve.image(angle);
-            let Some((column, row)) = projection.place(&image, side) else {
+            let Some(place) = places.place(&image, side) else {
                 continue;
             };
             let magnification = if angle < AXIS {
@@ -257,26 +256,16 @@ impl StarView<'_> {
             if brightest * magnification < self.faintest {
                 continue;
             }
-            let scale = magnification / projection.solid_angle;
-            let (left, above) = ((column - 0.5).floor(), (row - 0.5).floor());
-            splats.push(Splat {
-                column: left as i32,
-                row: above as i32,
-                right: (column - 0.5 - left) as f32,
-                down: (row - 0.5 - above) as f32,
-                light: light.map(|c| (f64::from(c) * scale).clamp(-BRIGHTEST, BRIGHTEST) as f32),
-            });
+            let scale = magnification / places.solid_angle;
+            let light = light.map(|c| (f64::from(c) * scale).clamp(-BRIGHTEST, BRIGHTEST));
+            places.splat(place, light, splats);
         }
     }
 }
 
 /// From directions to places in the picture.
-struct Projection {
-    /// The camera's directions ahead, right and up, in the basis (towards the hole, â, b̂).
-    ahead: [f64; 3],
-    right: [f64; 3],
-    up: [f64; 3],
-    per_pixel: f64,
+struct ImagePlaces<'a> {
+    view: &'a View,
     size: (f64, f64),
     /// Of a pixel in the picture's centre.
     solid_angle: f64,
@@ -289,8 +278,8 @@ struct Projection {
     last: usize,
 }
 
-impl Projection {
-    fn new(view: &View, curve: &EscapeCurve) -> Self {
+impl<'a> ImagePlaces<'a> {
+    fn new(view: &'a View, curve: &EscapeCurve) -> Self {
         // Stars half a pixel beyond the picture still shine into it.
         let (least, greatest) = hole_angles(view, 1.0);
         let swept = |psi: f64| {
@@ -313,13 +302,9 @@ impl Projection {
                 image.sine / image.rate
             })
         });
-        let (z, ta, tb) = (view.z(), view.ta(), view.tb());
         let side = view.pixel_side();
         Self {
-            ahead: [z.at_centre, ta.at_centre, tb.at_centre],
-            right: [z.per_x, ta.per_x, tb.per_x],
-            up: [z.per_y, ta.per_y, tb.per_y],
-            per_pixel: 1.0 / side,
+            view,
             size: (f64::from(view.width()), f64::from(view.height())),
             solid_angle: side * side,
             most,
@@ -338,19 +323,80 @@ impl Projection {
     /// none of its light falls into the picture.
     #[inline]
     fn place(&self, image: &Image, side: (f64, f64)) -> Option<(f64, f64)> {
-        let direction = [image.cosine, image.sine * side.0, image.sine * side.1];
-        let along = |axis: &[f64; 3]| {
-            axis[0] * direction[0] + axis[1] * direction[1] + axis[2] * direction[2]
-        };
-        let ahead = along(&self.ahead);
-        if ahead <= 0.0 {
-            return None;
-        }
-        let scale = self.per_pixel / ahead;
-        let column = 0.5 * self.size.0 + along(&self.right) * scale;
-        let row = 0.5 * self.size.1 - along(&self.up) * scale;
+        let (column, row) = self.view.place_of(PixelRay {
+            z: image.cosine,
+            ta: image.sine * side.0,
+            tb: image.sine * side.1,
+        })?;
         let is_within = |place: f64, size: f64| place > -0.5 && place < size + 0.5;
         (is_within(column, self.size.0) && is_within(row, self.size.1)).then_some((column, row))
+    }
+
+    /// Adds the light of an image at a place: as wide an angle as a pixel in the picture's centre.
+    ///
+    /// A fisheye stretches what is far from its centre around it, and an equirectangular picture what is far from the
+    /// horizon along its rows. There an image is several squares, side by side.
+    fn splat(&self, (column, row): (f64, f64), light: [f64; 3], splats: &mut Vec<Splat>) {
+        let (width, height) = self.size;
+        let mut push = |(column, row): (f64, f64), share: f64| {
+            let (left, above) = ((column - 0.5).floor(), (row - 0.5).floor());
+            splats.push(Splat {
+                column: left as i32,
+                row: above as i32,
+                right: (column - 0.5 - left) as f32,
+                down: (row - 0.5 - above) as f32,
+                light: light.map(|c| (c * share) as f32),
+            });
+        };
+        let lens = self.view.lens();
+        if lens.projection() == Projection::Perspective {
+            return push((column, row), 1.0);
+        }
+        let narrowing = lens.narrowing(self.view.x_at(column), self.view.y_at(row));
+        let stretch = (1.0 / narrowing).min(width);
+        // A little less: a stretch of 1 may be rounded.
+        let count = (stretch - 1e-6).ceil().max(1.0);
+        let apart = (stretch - 1.0).max(0.0) / (count - 1.0).max(1.0);
+        for i in 0..count as u32 {
+            let aside = (f64::from(i) - 0.5 * (count - 1.0)) * apart;
+            if lens.projection() == Projection::Fisheye {
+                let (x, y) = (column - 0.5 * width, row - 0.5 * height);
+                let (sine, cosine) = libm::sincos(aside / (x * x + y * y).sqrt().max(1.0));
+                let turned = (x * cosine - y * sine, x * sine + y * cosine);
+                push(
+                    (turned.0 + 0.5 * width, turned.1 + 0.5 * height),
+                    1.0 / count,
+                );
+                continue;
+            }
+            let along = column + aside;
+            let around = along - (along / width).floor() * width;
+            // What falls over a pole comes down on its other side.
+            let over = if row < 0.5 {
+                Some(-row)
+            } else if row > height - 0.5 {
+                Some(2.0 * height - row)
+            } else {
+                None
+            };
+            for (column, row) in [(around, Some(row)), (around + 0.5 * width, over)] {
+                let Some(row) = row else {
+                    continue;
+                };
+                let column = if column >= width {
+                    column - width
+                } else {
+                    column
+                };
+                push((column, row), 1.0 / count);
+                // The picture's left side is its right side.
+                if column < 0.5 {
+                    push((column + width, row), 1.0 / count);
+                } else if column > width - 0.5 {
+                    push((column - width, row), 1.0 / count);
+                }
+            }
+        }
     }
 }
 
@@ -360,6 +406,10 @@ fn hole_angles(view: &View, margin: f64) -> (f64, f64) {
     let centre = view.ray_at(0.0, 0.0);
     let axis = libm::atan2(centre.transverse(), centre.z);
     let (x, y) = (view.x_at(-margin), view.y_at(-margin));
-    let corner = libm::atan((x * x + y * y).sqrt());
+    let corner = match view.lens().projection() {
+        Projection::Perspective => libm::atan((x * x + y * y).sqrt()),
+        Projection::Fisheye => y,
+        Projection::Equirectangular => PI,
+    };
     ((axis - corner).max(0.0), (axis + corner).min(PI))
 }

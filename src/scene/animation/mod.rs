@@ -42,6 +42,7 @@ use glam::DVec3;
 use super::checked::Scene;
 use super::error::SceneError;
 use super::file::{AnimationTable, Interpolation, KeyframeTable, SceneFile};
+use super::projection::Projection;
 use super::validate;
 use super::values::{Camera, Disk, ImageSettings};
 use super::vector::cosine;
@@ -152,6 +153,12 @@ impl Animation {
         let fov = keys.named("animation.keyframe.fov", |keyframe| {
             keyframe.fov.map(|fov| [fov])
         })?;
+        if !fov.is_empty() && file.camera.projection == Projection::Equirectangular {
+            return Err(SceneError::toml(
+                "animation.keyframe.fov has no meaning for an equirectangular picture, which shows the whole sphere; \
+                 remove it from all keyframes",
+            ));
+        }
         let normal = keys.directions("animation.keyframe.normal", |keyframe| keyframe.normal)?;
         let focus_of_scene = validate::finite_vector("camera.focus", file.camera.focus)?;
         let disk = match &file.disk {
@@ -275,6 +282,7 @@ impl Animation {
                 Up::OfOrbit => up,
             },
             fov_degrees: self.fov.at(time)[0],
+            projection: self.file.camera.projection,
         };
         let disk = self.disk.as_ref().map(|disk| disk.at(time));
         let (light, sky) = (self.file.light(), self.file.sky.clone());

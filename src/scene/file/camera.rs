@@ -1,9 +1,10 @@
-//! `[camera]`: where it stands, by a position or by angles, and its field of view, vertical or horizontal.
+//! `[camera]`: where it stands, by a position or by angles, its projection, and its field of view, vertical or horizontal.
 
 use serde::Deserialize;
 
 use super::{maybe_three_numbers, three_numbers};
 use crate::scene::error::SceneError;
+use crate::scene::projection::Projection;
 use crate::scene::validate;
 use crate::scene::values::{Camera, ImageSize};
 
@@ -18,11 +19,18 @@ pub(in crate::scene) struct CameraTable {
     pub(in crate::scene) up: Option<[f64; 3]>,
     /// In degrees.
     pub(in crate::scene) roll: f64,
+    pub(in crate::scene) projection: Projection,
     pub(in crate::scene) fov: Fov,
 }
 
 /// The vertical field of view where none is given, in degrees.
 const DEFAULT_FOV: f64 = 30.0;
+
+/// The whole angle of a fisheye where none is given, in degrees: that of a dome.
+const DEFAULT_FISHEYE: f64 = 180.0;
+
+/// The height of the whole sphere, in degrees.
+pub(in crate::scene) const SPHERE: f64 = 180.0;
 
 impl Default for CameraTable {
     fn default() -> Self {
@@ -31,6 +39,7 @@ impl Default for CameraTable {
             focus: [0.0; 3],
             up: None,
             roll: 0.0,
+            projection: Projection::Perspective,
             fov: Fov::Vertical(DEFAULT_FOV),
         }
     }
@@ -70,6 +79,8 @@ struct CameraKeys {
     up: Option<[f64; 3]>,
     #[serde(default)]
     roll: f64,
+    #[serde(default)]
+    projection: Projection,
     fov: Option<f64>,
     fov_horizontal: Option<f64>,
 }
@@ -103,13 +114,25 @@ impl TryFrom<CameraKeys> for CameraTable {
                 );
             }
         };
-        let fov = match (keys.fov, keys.fov_horizontal) {
-            (Some(fov), None) => Fov::Vertical(fov),
-            (None, Some(fov)) => Fov::Horizontal(fov),
-            (None, None) => Fov::Vertical(DEFAULT_FOV),
-            (Some(_), Some(_)) => {
+        let fov = match (keys.projection, keys.fov, keys.fov_horizontal) {
+            (_, Some(_), Some(_)) => {
                 return Err(
                     "camera.fov and camera.fov_horizontal are both given; remove one of them",
+                );
+            }
+            (Projection::Perspective, Some(fov), None) => Fov::Vertical(fov),
+            (Projection::Perspective, None, Some(fov)) => Fov::Horizontal(fov),
+            (Projection::Perspective, None, None) => Fov::Vertical(DEFAULT_FOV),
+            (Projection::Fisheye, fov, None) => Fov::Vertical(fov.unwrap_or(DEFAULT_FISHEYE)),
+            (Projection::Fisheye, None, Some(_)) => {
+                return Err(
+                    "camera.fov_horizontal has no meaning for a fisheye; camera.fov is its whole angle, up to 360",
+                );
+            }
+            (Projection::Equirectangular, None, None) => Fov::Vertical(SPHERE),
+            (Projection::Equirectangular, ..) => {
+                return Err(
+                    "an equirectangular picture shows the whole sphere; remove camera.fov and camera.fov_horizontal",
                 );
             }
         };
@@ -118,6 +141,7 @@ impl TryFrom<CameraKeys> for CameraTable {
             focus: keys.focus,
             up: keys.up,
             roll: keys.roll,
+            projection: keys.projection,
             fov,
         })
     }
@@ -146,7 +170,7 @@ impl CameraTable {
             self.up.get_or_insert(camera.up.to_array());
         }
         if let Fov::Horizontal(degrees) = self.fov {
-            validate::fov("camera.fov_horizontal", degrees)?;
+            validate::fov("camera.fov_horizontal", degrees, self.projection)?;
             self.fov = Fov::Vertical(Camera::vertical_fov(degrees, size));
         }
         Ok(has_angles)

@@ -7,6 +7,7 @@ use super::{
     Place, SceneFile, line, sky,
 };
 use crate::scene::checked::Scene;
+use crate::scene::projection::Projection;
 use crate::scene::values::{Light, Tone};
 
 impl From<&Scene> for SceneFile {
@@ -18,6 +19,7 @@ impl From<&Scene> for SceneFile {
                 focus: camera.focus.to_array(),
                 up: Some(camera.up.to_array()),
                 roll: 0.0,
+                projection: camera.projection,
                 fov: Fov::Vertical(camera.fov_degrees),
             },
             disk: scene.disk().map(|disk| DiskTable {
@@ -103,6 +105,13 @@ impl fmt::Display for CameraTable {
         line(f, "up", self.up)?;
         if self.roll != 0.0 {
             writeln!(f, "roll = {:?}", self.roll)?;
+        }
+        // Left out at its default, as is what has no place beside another one.
+        if self.projection != Projection::Perspective {
+            writeln!(f, "projection = {:?}", self.projection.name())?;
+        }
+        if self.projection == Projection::Equirectangular {
+            return Ok(());
         }
         match self.fov {
             Fov::Vertical(degrees) => writeln!(f, "fov = {degrees:?}"),

@@ -208,14 +208,31 @@ fn the_view_may_turn_all_the_way_round() {
 
 #[test]
 fn the_field_of_view_stays_one_that_a_scene_may_have() {
-    let scene = Scene::builtin("classic").unwrap();
-    let mut navigator = Navigator::new(&scene);
-    for factor in [0.5, 1.5] {
-        for _ in 0..600 {
-            navigator.scale_fov(factor);
+    for (projection, fov, widest) in [
+        (Projection::Perspective, 30.0, WIDEST_FOV),
+        (Projection::Fisheye, 180.0, WIDEST_FISHEYE),
+        (Projection::Equirectangular, 180.0, 180.0),
+    ] {
+        let scene = Scene::builtin("classic")
+            .unwrap()
+            .with_size(64, 32)
+            .unwrap();
+        let camera = Camera {
+            projection,
+            fov_degrees: fov,
+            ..*scene.camera()
+        };
+        let scene = scene.with_camera(camera).unwrap();
+        let mut navigator = Navigator::new(&scene);
+        for factor in [0.5, 1.5] {
+            for _ in 0..600 {
+                navigator.scale_fov(factor);
+            }
+            assert!(scene.clone().with_camera(navigator.camera()).is_ok());
         }
-        assert!(scene.clone().with_camera(navigator.camera()).is_ok());
+        assert!((navigator.fov_degrees() - widest).abs() < 1e-9);
+        assert_eq!(navigator.camera().position, scene.camera().position);
+        navigator.turn(1.0, 1.0);
+        assert_eq!(navigator.camera().projection, projection);
     }
-    assert!((navigator.fov_degrees() - WIDEST_FOV).abs() < 1e-9);
-    assert_eq!(navigator.camera().position, scene.camera().position);
 }
