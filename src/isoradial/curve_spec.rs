@@ -166,3 +166,50 @@ pub(super) fn critical_kappa(u0: f64, slope_scale: f64) -> f64 {
         -size
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{ImageSize, Navigator};
+
+    #[test]
+    fn what_lies_ahead_serves_a_camera_that_turns() {
+        let spec = |scene: &Scene| CurveSpec::new(scene, &View::new(scene), scene.tolerance());
+        for (name, fov) in [
+            ("classic", 30.0),
+            ("lit", 8.0),
+            ("inside", 90.0),
+            ("edge-on", 30.0),
+        ] {
+            let scene = Scene::builtin(name).unwrap();
+            let ImageSize { width, height } = scene.image();
+            let start = Navigator::new(&scene);
+            let fov = fov.min(start.fov_degrees());
+            let ahead = spec(&scene).ahead();
+            assert!(ahead.is_beside(&spec(&scene)));
+            for (right, down) in [
+                (1.0, 0.3),
+                (-1.0, 0.3),
+                (50.0, 0.0),
+                (0.0, 0.5),
+                (0.0, -0.5),
+            ] {
+                let mut turned = start.clone();
+                turned.turn(right, down);
+                let mut aside = start.clone();
+                aside.look(0.2 * fov * right.signum(), 0.5 * down * fov);
+                for camera in [turned.camera(), aside.camera()] {
+                    let next = scene.clone().with_camera(camera).unwrap();
+                    let is_served = ahead.union(&spec(&next)) == Some(ahead);
+                    assert!(
+                        is_served,
+                        "{name}: {right}, {down}: {ahead:?}, {:?}",
+                        spec(&next)
+                    );
+                }
+            }
+            let finer = scene.clone().with_size(width / 4, height / 4).unwrap();
+            assert!(!ahead.is_beside(&spec(&finer)));
+        }
+    }
+}

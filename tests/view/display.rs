@@ -4,6 +4,7 @@ use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -18,7 +19,7 @@ use crate::tables::table;
 use crate::tools;
 
 /// The longest that anything is waited for. A busy machine may take long.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_secs(120);
 
 /// The window's size.
 pub(crate) const SIZE: (u32, u32) = (320, 180);
@@ -42,6 +43,9 @@ pub(crate) struct Screen {
 
 impl Screen {
     pub(crate) fn new() -> Self {
+        // Servers that begin at once may choose the same number.
+        static STARTING: Mutex<()> = Mutex::new(());
+        let _one_at_a_time = STARTING.lock().unwrap_or_else(PoisonError::into_inner);
         let mut server = Command::new("Xvfb")
             .args([
                 "-displayfd",
@@ -82,7 +86,9 @@ impl Screen {
 
 impl Drop for Screen {
     fn drop(&mut self) {
-        let _ = self.server.kill();
+        // It removes the display's lock; killed it would leave it.
+        let process = self.server.id().to_string();
+        let _ = Command::new("kill").arg(process).status();
         let _ = self.server.wait();
     }
 }
@@ -137,6 +143,11 @@ impl Window {
             screen,
         };
         let id = wait_for("a window", || {
+            let child = window.child.as_mut().unwrap();
+            if child.try_wait().unwrap().is_some() {
+                let output = window.child.take().unwrap().wait_with_output().unwrap();
+                panic!("{}", String::from_utf8_lossy(&output.stderr));
+            }
             let found = window
                 .screen
                 .tool(&["xdotool", "search", "--onlyvisible", "--name", "."]);
@@ -219,6 +230,20 @@ impl Window {
         })
     }
 
+    /// The picture once the camera is at rest: it is the same for longer than it takes to come to rest.
+    pub(crate) fn at_rest(&self) -> Picture {
+        let mut last = self.picture();
+        let mut same = 0;
+        wait_until("rest", || {
+            thread::sleep(Duration::from_millis(100));
+            let now = self.picture();
+            same = if now == last { same + 1 } else { 0 };
+            last = now;
+            same == 6
+        });
+        last
+    }
+
     /// Waits until the program ends.
     pub(crate) fn ends(mut self) -> Output {
         let mut child = self.child.take().unwrap();
@@ -239,7 +264,7 @@ impl Drop for Window {
 }
 
 /// Waits until something is there, and returns it.
-pub(crate) fn wait_for<T>(what: &str, find: impl Fn() -> Option<T>) -> T {
+pub(crate) fn wait_for<T>(what: &str, mut find: impl FnMut() -> Option<T>) -> T {
     let start = Instant::now();
     loop {
         if let Some(found) = find() {
@@ -252,11 +277,7 @@ pub(crate) fn wait_for<T>(what: &str, find: impl Fn() -> Option<T>) -> T {
 
 /// Waits until something is so.
 pub(crate) fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
-    let start = Instant::now();
-    while !is_so() {
-        assert!(start.elapsed() < PATIENCE, "{what} did not come");
-        thread::sleep(Duration::from_millis(20));
-    }
+    wait_for(what, || is_so().then_some(()));
 }
 
 /// A built-in scene as a picture of the window's size, seen by a camera that was steered.

@@ -6,7 +6,7 @@ use std::path::Path;
 use darkness::Scene;
 
 use crate::display::{
-    Picture, SIZE_OPTION, Window, can_show, drawn, read, steered, wait_until, with_tables,
+    SIZE_OPTION, Window, can_show, drawn, read, steered, wait_until, with_tables,
 };
 use crate::process::done;
 
@@ -50,7 +50,7 @@ fn a_saved_view_is_rendered_to_the_picture_that_was_seen() {
         window.hand("click 4 click 4 key bracketright");
         window.shows_what("another picture", |picture| *picture != first);
         // The camera is at rest when the picture stays.
-        let seen = at_rest(&window);
+        let seen = window.at_rest();
         window.hand("key s key p");
         let toml = written(&window, "view-0002.toml");
         let picture = written(&window, "view-0001.png");
@@ -63,20 +63,6 @@ fn a_saved_view_is_rendered_to_the_picture_that_was_seen() {
         );
         assert!(read(&here.join("again.png")) == seen, "{name} {keys}");
     }
-}
-
-/// The picture once the camera is at rest: it is the same for longer than it takes to come to rest.
-fn at_rest(window: &Window) -> Picture {
-    let mut last = window.picture();
-    let mut same = 0;
-    wait_until("rest", || {
-        std::thread::sleep(std::time::Duration::from_millis(100));
-        let now = window.picture();
-        same = if now == last { same + 1 } else { 0 };
-        last = now;
-        same == 6
-    });
-    last
 }
 
 #[test]
@@ -125,7 +111,7 @@ fn a_scene_that_changes_is_read_again_and_what_is_wrong_with_it_is_told() {
     let path = window.folder.path().join("mine.toml");
     fs::write(&path, "[camera]\nposition = [30, 0, 0.5]\nfov = \"wide\"\n").unwrap();
     let told = window.shows_what("an error", |picture| *picture != first);
-    let upper = 3 * 320 * 100;
+    let upper = 3 * 320 * 20;
     assert!(told.bytes[..upper] == first.bytes[..upper]);
     let smaller = scene.to_toml().replace("outer = 12.0", "outer = 9.0");
     fs::write(&path, &smaller).unwrap();

@@ -1,6 +1,7 @@
 //! Guards against a window that shows other pixels than the library draws, or that moves otherwise than the hand.
 
 use darkness::Scene;
+use darkness::scene::Navigator;
 
 use crate::display::{SIZE, Window, can_show, drawn, steered, wait_until};
 
@@ -39,7 +40,7 @@ fn a_drag_down_inclines_and_a_drag_sideways_changes_nothing_of_a_symmetric_disk(
         let inclined = drawn(&steered(name, |navigator| navigator.turn(0.0, 30.0 * TURN)));
         assert!(inclined != before);
         window.shows(&inclined);
-        let turned = |navigator: &mut darkness::scene::Navigator| {
+        let turned = |navigator: &mut Navigator| {
             navigator.turn(0.0, 30.0 * TURN);
             navigator.turn(40.0 * TURN, 0.0);
         };
@@ -73,18 +74,26 @@ fn the_wheel_moves_and_the_right_button_looks_aside() {
         return;
     }
     let window = Window::open("lit");
+    window.shows(&drawn(&steered("lit", |_| {})));
     window.hand("mousemove 160 90 click 4");
-    window.shows(&drawn(&steered("lit", |navigator| navigator.zoom(0.9))));
-    window.hand("click 5 click 5");
-    let out = |navigator: &mut darkness::scene::Navigator| {
-        for notches in [1.0, -1.0, -1.0] {
-            navigator.zoom(libm::pow(0.9, notches));
+    // Of a wheel that has buttons and no axes, as xdotool's, winit tells both the pressing and the releasing.
+    let rolled = |notches: &[(f64, usize)]| {
+        let notches: Vec<_> = notches.to_vec();
+        move |navigator: &mut Navigator| {
+            for (direction, count) in notches {
+                (0..count).for_each(|_| navigator.zoom(libm::pow(0.9, direction)));
+            }
         }
     };
+    let seen = window.at_rest();
+    let told = (1..=2).find(|&told| seen == drawn(&steered("lit", rolled(&[(1.0, told)]))));
+    let told = told.expect("one notch or two");
+    window.hand("click 5 click 5");
+    let out = rolled(&[(1.0, told), (-1.0, 2 * told)]);
     window.shows(&drawn(&steered("lit", out)));
     window.drag(3, MIDDLE, (170, 60));
-    let aside = |navigator: &mut darkness::scene::Navigator| {
-        out(navigator);
+    let aside = |navigator: &mut Navigator| {
+        rolled(&[(1.0, told), (-1.0, 2 * told)])(navigator);
         let per_pixel = navigator.fov_degrees() * (1.0 / f64::from(SIZE.1));
         navigator.look(-per_pixel * 10.0, -per_pixel * -30.0);
     };

@@ -50,6 +50,16 @@ impl<'a> Bitmap<'a> {
         self.height
     }
 
+    /// All of it.
+    pub(super) fn whole(&self) -> Area {
+        Area {
+            left: 0,
+            top: 0,
+            width: self.width,
+            height: self.height,
+        }
+    }
+
     /// The part of a row within an area.
     fn part(&mut self, area: Area, row: usize) -> &mut [u32] {
         let right = (area.left + area.width).min(self.width);
@@ -73,8 +83,17 @@ impl<'a> Bitmap<'a> {
     pub(super) fn fill_columns(&mut self, area: Area, colour: impl Fn(f64) -> u32) {
         for row in self.rows(area) {
             for (i, pixel) in self.part(area, row).iter_mut().enumerate() {
-                *pixel = colour((i as f64 + 0.5) / area.width as f64);
+                *pixel = colour(i as f64 / (area.width - 1).max(1) as f64);
             }
+        }
+    }
+
+    /// Copies a picture of the area's size into it.
+    pub(super) fn copy(&mut self, area: Area, picture: &[u32]) {
+        for (row, source) in self.rows(area).zip(picture.chunks(area.width.max(1))) {
+            let part = self.part(area, row);
+            let width = part.len().min(source.len());
+            part[..width].copy_from_slice(&source[..width]);
         }
     }
 
@@ -122,6 +141,7 @@ mod tests {
         bitmap.blend((0, 0), 0x0010_2030, 255);
         bitmap.blend((1, 0), 0x0010_2030, 0);
         bitmap.fill(Area { left: 5, ..area }, 7);
+        bitmap.copy(Area { width: 1, ..area }, &[0x003f_2010, 8, 9]);
         let same = 0x00ff_8040;
         assert_eq!(pixels, [0x0010_2030, same, same, same, same, 0x003f_2010]);
     }

@@ -3,6 +3,7 @@
 use super::bitmap::{Area, Bitmap};
 use super::controls;
 use super::false_colour::ColourScale;
+use super::pace::Coarseness;
 use super::text::Typeface;
 use super::viewer::Viewer;
 
@@ -27,8 +28,8 @@ pub(super) struct Overlay {
 pub(super) struct Measured<'a> {
     /// Of frames a second, while they are drawn.
     pub(super) rate: Option<f64>,
-    /// How many pixels of the window one pixel of the frame stands for, in each direction.
-    pub(super) reduction: u32,
+    /// How coarse the frame is.
+    pub(super) coarseness: Coarseness,
     /// Of the false colours.
     pub(super) scale: Option<(ColourScale, &'a [u32])>,
     /// What the pointer is over.
@@ -169,8 +170,10 @@ fn figures(viewer: &Viewer, measured: &Measured<'_>) -> Vec<String> {
         format!("field of view {:.4}°", navigator.fov_degrees()),
         format!("shows {}", viewer.shown().name()),
     ];
-    if measured.reduction > 1 {
-        lines[0] += &format!(", at 1/{} of the size", measured.reduction);
+    match measured.coarseness {
+        Coarseness::FULL => {}
+        Coarseness { reduction: 1, .. } => lines[0] += ", hard edges",
+        Coarseness { reduction, .. } => lines[0] += &format!(", at 1/{reduction} of the size"),
     }
     if let Some(order) = viewer.order() {
         lines.push(format!("order {order} alone"));

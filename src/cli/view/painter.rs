@@ -11,6 +11,7 @@ use super::super::progress::Report;
 use super::super::render::read_sky;
 use super::bitmap::colour;
 use super::false_colour::ColourScale;
+use super::pace::Coarseness;
 use super::shown::Shown;
 use crate::orbit::exact::Exact;
 use crate::render::needs::Needs;
@@ -106,9 +107,9 @@ pub(super) struct Look<'a> {
     pub(super) shown: Shown,
     /// The only order that is shown.
     pub(super) order: Option<u32>,
-    /// How many pixels of the window one pixel of the frame stands for, in each direction; `None` at rest: the pixels
-    /// are those of `darkness render`, to the last bit.
-    pub(super) reduction: Option<u32>,
+    /// How coarse it is, while the camera moves; `None` at rest: the pixels are those of `darkness render`, to the last
+    /// bit.
+    pub(super) coarseness: Option<Coarseness>,
 }
 
 /// Draws looks.
@@ -162,23 +163,26 @@ impl<'a> ViewPainter<'a> {
             pixels.len() == width * height,
             "the window changes its size"
         );
-        match look.reduction {
-            None | Some(1) => self.frame(look, pixels),
-            Some(by) => {
-                let (columns, rows) = (size.width.div_ceil(by), size.height.div_ceil(by));
-                let scene = look.scene.clone().with_size(columns, rows)?;
-                let mut coarse = std::mem::take(&mut self.coarse);
-                coarse.resize(columns as usize * rows as usize, 0);
-                let look = Look {
-                    scene: &scene,
-                    ..look
-                };
-                let drawn = self.frame(look, &mut coarse);
-                enlarge(&coarse, columns as usize, pixels, width, by as usize);
-                self.coarse = coarse;
-                drawn
-            }
+        let Some(coarseness) = look.coarseness.filter(|&by| by != Coarseness::FULL) else {
+            return self.frame(look, pixels);
+        };
+        let by = coarseness.reduction;
+        let (columns, rows) = (size.width.div_ceil(by), size.height.div_ceil(by));
+        let scene = look.scene.clone().with_antialias(false);
+        let scene = scene.with_size(columns, rows)?;
+        let look = Look {
+            scene: &scene,
+            ..look
+        };
+        if by == 1 {
+            return self.frame(look, pixels);
         }
+        let mut coarse = std::mem::take(&mut self.coarse);
+        coarse.resize(columns as usize * rows as usize, 0);
+        let drawn = self.frame(look, &mut coarse);
+        enlarge(&coarse, columns as usize, pixels, width, by as usize);
+        self.coarse = coarse;
+        drawn
     }
 
     /// Draws a frame of the scene's own size.
@@ -187,7 +191,7 @@ impl<'a> ViewPainter<'a> {
         if self.memory.form() != form {
             self.memory = FrameMemory::new(form);
         }
-        self.draw(look.scene, form, look.reduction.is_none())?;
+        self.draw(look.scene, form, look.coarseness.is_none())?;
         self.scale = None;
         match (self.memory.pixels(), look.shown) {
             (Pixels::Grey8(bytes), _) => {
@@ -325,12 +329,12 @@ mod tests {
         scene.with_size(width, height).unwrap()
     }
 
-    fn look(scene: &Scene, reduction: Option<u32>) -> Look<'_> {
+    fn look(scene: &Scene, coarseness: Option<Coarseness>) -> Look<'_> {
         Look {
             scene,
             shown: Shown::of(scene),
             order: None,
-            reduction,
+            coarseness,
         }
     }
 
@@ -350,8 +354,10 @@ mod tests {
                 // Curves of narrow views are more accurate ones.
                 navigator.scale_fov(if step < 3 { 0.3 } else { 4.0 });
                 let scene = wide.clone().with_camera(navigator.camera()).unwrap();
-                for reduction in [Some(1), None] {
-                    painter.paint(look(&scene, reduction), &mut pixels).unwrap();
+                for coarseness in [Some(Coarseness::FULL), None] {
+                    painter
+                        .paint(look(&scene, coarseness), &mut pixels)
+                        .unwrap();
                 }
                 assert!(pixels == rendered(table, &scene), "{step}");
             }
@@ -367,11 +373,17 @@ mod tests {
         with_painter(|painter, table| {
             let whole = scene("lit", SIZE);
             let (width, height) = (SIZE.0 as usize, SIZE.1 as usize);
-            for by in 2..=4 {
+            for by in 1..=4 {
                 let mut pixels = vec![7; width * height];
-                painter.paint(look(&whole, Some(by)), &mut pixels).unwrap();
+                let coarseness = Coarseness {
+                    reduction: by,
+                    is_smooth: false,
+                };
+                let look = look(&whole, Some(coarseness));
+                painter.paint(look, &mut pixels).unwrap();
                 let (columns, rows) = (SIZE.0.div_ceil(by), SIZE.1.div_ceil(by));
-                let coarse = rendered(table, &scene("lit", (columns, rows)));
+                let hard = scene("lit", (columns, rows)).with_antialias(false);
+                let coarse = rendered(table, &hard);
                 for (place, &pixel) in pixels.iter().enumerate() {
                     let (x, y) = (place % width / by as usize, place / width / by as usize);
                     assert_eq!(pixel, coarse[y * columns as usize + x], "{by}: {place}");

@@ -45,7 +45,7 @@ pub(super) fn picture(
         let size = scene.image();
         let mut pixels = vec![0; size.width as usize * size.height as usize];
         let at_rest = Look {
-            reduction: None,
+            coarseness: None,
             ..look
         };
         painter.paint(at_rest, &mut pixels)?;

@@ -6,7 +6,7 @@ use super::bitmap::Area;
 use super::controls::Action;
 use super::playback::Playback;
 use super::shown::Shown;
-use crate::scene::{Animation, ImageSize, MAX_EXPOSURE, Navigator, Scene, SceneError};
+use crate::scene::{Animation, ImageSize, MAX_EXPOSURE, Navigator, Projection, Scene, SceneError};
 
 /// How far a drag over the picture's height turns about the hole, in degrees.
 const TURN: f64 = 180.0;
@@ -55,8 +55,9 @@ pub(super) enum Request {
 pub(super) struct Viewer {
     animation: Animation,
     playback: Playback,
+    /// Of the window.
     size: ImageSize,
-    /// The frame of the animation, as a picture of the window's size.
+    /// The frame of the animation, as a picture that fits the window.
     read: Scene,
     navigator: Navigator,
     /// Added to the scene's exposure.
@@ -77,14 +78,12 @@ pub(super) struct Viewer {
 }
 
 impl Viewer {
-    /// Looks at the first frame of an animation, as a picture of some size.
+    /// Looks at the first frame of an animation, in a window of some size.
     ///
     /// # Errors
     /// The first frame cannot be.
     pub(super) fn new(animation: Animation, size: ImageSize) -> Result<Self, SceneError> {
-        let read = animation
-            .first_frame()?
-            .with_size(size.width, size.height)?;
+        let read = fitted(animation.first_frame()?, size)?;
         let shown = Shown::of(&read);
         Ok(Self {
             playback: Playback::new(&animation),
@@ -137,9 +136,27 @@ impl Viewer {
         self.has_help
     }
 
-    /// Where the pointer is, in pixels from the left and the top.
+    /// Where the pointer is, in pixels from the picture's left and top.
     pub(super) fn pointer(&self) -> Option<(f64, f64)> {
-        self.pointer
+        let area = self.area();
+        let (x, y) = self.pointer?;
+        Some((x - area.left as f64, y - area.top as f64))
+    }
+
+    /// The part of the window that the picture takes, in its middle.
+    pub(super) fn area(&self) -> Area {
+        let ImageSize { width, height } = self.scene.image();
+        Area {
+            left: (self.size.width - width) as usize / 2,
+            top: (self.size.height - height) as usize / 2,
+            width: width as usize,
+            height: height as usize,
+        }
+    }
+
+    /// The window's size.
+    pub(super) fn size(&self) -> ImageSize {
+        self.size
     }
 
     /// What is written over the picture: what is wrong, or what has been done.
@@ -189,7 +206,7 @@ impl Viewer {
         if size == self.size {
             return;
         }
-        match self.read.clone().with_size(size.width, size.height) {
+        match fitted(self.read.clone(), size) {
             Ok(read) => {
                 self.size = size;
                 self.read = read;
@@ -347,8 +364,7 @@ impl Viewer {
         let scene = |animation: &Animation| {
             let mut playback = Playback::new(animation);
             playback.go_to(self.playback.frame());
-            let scene = animation.frame(playback.frame())?;
-            let scene = scene.with_size(self.size.width, self.size.height)?;
+            let scene = fitted(animation.frame(playback.frame())?, self.size)?;
             Ok::<_, SceneError>((playback, scene))
         };
         match read.and_then(|animation| scene(&animation).map(|read| (animation, read))) {
@@ -402,7 +418,8 @@ impl Viewer {
     fn seek(&mut self, now: Instant) {
         if let Some((x, _)) = self.pointer {
             let before = self.playback.frame();
-            self.playback.seek(x / f64::from(self.size.width));
+            let last = f64::from(self.size.width.max(2) - 1);
+            self.playback.seek(x / last);
             if self.playback.frame() != before {
                 self.moved = Some(now);
             }
@@ -412,9 +429,8 @@ impl Viewer {
 
     /// Takes the scene and the camera of the animation's frame.
     fn show_frame(&mut self) {
-        let size = self.size;
         let frame = self.animation.frame(self.playback.frame());
-        match frame.and_then(|frame| frame.with_size(size.width, size.height)) {
+        match frame.and_then(|frame| fitted(frame, self.size)) {
             Ok(read) => {
                 self.navigator = Navigator::new(&read);
                 self.read = read;
@@ -444,6 +460,16 @@ impl Viewer {
         }
         self.has_changed = true;
     }
+}
+
+/// Returns the scene as the largest picture that fits a window: the whole sphere is twice as wide as high.
+fn fitted(scene: Scene, window: ImageSize) -> Result<Scene, SceneError> {
+    let ImageSize { width, height } = window;
+    if scene.camera().projection == Projection::Equirectangular {
+        let height = height.min(width / 2);
+        return scene.with_size(2 * height, height);
+    }
+    scene.with_size(width, height)
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ use super::bitmap::Bitmap;
 use super::controls::{self, Action};
 use super::measure::Measure;
 use super::overlay::{Measured, Overlay};
-use super::pace::Pace;
+use super::pace::{Coarseness, Pace};
 use super::painter::{Look, Methods, ViewPainter};
 use super::pointed::pointed;
 use super::save;
@@ -79,6 +79,7 @@ pub(super) fn run(args: &ViewArgs, report: Report) -> anyhow::Result<()> {
         last_drawn: None,
         fault: None,
         pointed: None,
+        picture: Vec::new(),
         outcome: Ok(()),
     };
     event_loop.run_app(&mut app)?;
@@ -119,6 +120,8 @@ struct ViewApp<'a> {
     fault: Option<String>,
     /// What the pointer is over.
     pointed: Option<String>,
+    /// A picture that is smaller than the window.
+    picture: Vec<u32>,
     outcome: anyhow::Result<()>,
 }
 
@@ -334,39 +337,48 @@ impl ViewApp<'_> {
             return Ok(());
         };
         let start = Instant::now();
-        let reduction = match &self.measure {
-            Some(_) => Some(1),
-            None if self.viewer.is_moving() => Some(self.pace.reduction()),
+        let coarseness = match &self.measure {
+            Some(_) => Some(Coarseness::FULL),
+            None if self.viewer.is_moving() => Some(self.pace.coarseness()),
             None => None,
         };
         let mut buffer = surface.buffer_mut().map_err(failed)?;
         if let Some(measure) = &mut self.measure {
             measure.shown();
         }
-        let look = look(&self.viewer, reduction);
-        self.fault = self
-            .painter
-            .paint(look, &mut buffer)
-            .err()
-            .map(|error| error.to_string());
-        if self.fault.is_some() {
+        let look = look(&self.viewer, coarseness);
+        let (area, size) = (self.viewer.area(), self.viewer.size());
+        let is_whole = area.width * area.height == buffer.len();
+        let painted = if is_whole {
+            self.painter.paint(look, &mut buffer)
+        } else {
             buffer.fill(0);
+            self.picture.resize(area.width * area.height, 0);
+            self.painter.paint(look, &mut self.picture)
+        };
+        self.fault = painted.err().map(|error| error.to_string());
+        let mut bitmap = Bitmap::new(&mut buffer, size.width as usize);
+        if self.fault.is_some() {
+            bitmap.fill(bitmap.whole(), 0);
+        } else if !is_whole {
+            bitmap.copy(area, &self.picture);
         }
-        let rate = self.rate.filter(|_| reduction.is_some());
+        let rate = self.rate.filter(|_| coarseness.is_some());
         let measured = Measured {
             rate,
-            reduction: reduction.unwrap_or(1),
+            coarseness: coarseness.unwrap_or(Coarseness::FULL),
             scale: self.painter.scale(),
             pointed: self.pointed.as_deref(),
             fault: self.fault.as_deref(),
         };
-        let mut bitmap = Bitmap::new(&mut buffer, look.scene.image().width as usize);
         self.overlay.write(&self.viewer, &measured, &mut bitmap);
         window.pre_present_notify();
         buffer.present().map_err(failed)?;
         let end = Instant::now();
-        if reduction.is_some() {
+        if coarseness.is_some() {
             self.pace.drawn(end - start);
+        } else {
+            self.pace.rested();
         }
         let since = self.last_drawn.replace(end).map(|last| end - last);
         self.rate = since.filter(|&since| since < PAUSE).map(|since| {
@@ -381,12 +393,12 @@ impl ViewApp<'_> {
 }
 
 /// What the viewer looks at.
-fn look(viewer: &Viewer, reduction: Option<u32>) -> Look<'_> {
+fn look(viewer: &Viewer, coarseness: Option<Coarseness>) -> Look<'_> {
     Look {
         scene: viewer.scene(),
         shown: viewer.shown(),
         order: viewer.order(),
-        reduction,
+        coarseness,
     }
 }
 

@@ -282,3 +282,28 @@ fn another_size_keeps_the_view() {
     viewer.resize(size);
     assert!(!viewer.take_change());
 }
+
+#[test]
+fn the_whole_sphere_is_in_the_middle_of_any_window() {
+    let toml = "[camera]\nposition = [20, 0, 5]\nprojection = \"equirectangular\"\n[disk]\n\
+                [image]\nwidth = 64\nheight = 32\n";
+    let animation = Animation::from_toml(toml).unwrap();
+    let mut viewer = Viewer::new(animation, SIZE).unwrap();
+    let size = |viewer: &Viewer| (viewer.scene().image().width, viewer.scene().image().height);
+    assert_eq!(
+        (size(&viewer), viewer.area().left, viewer.area().top),
+        ((320, 160), 0, 10)
+    );
+    viewer.point((7.0, 30.0), Instant::now());
+    assert_eq!(viewer.pointer(), Some((7.0, 20.0)));
+    viewer.resize(ImageSize {
+        width: 333,
+        height: 100,
+    });
+    assert_eq!(
+        (size(&viewer), viewer.area().left, viewer.area().top),
+        ((200, 100), 66, 0)
+    );
+    keys(&mut viewer, "]", Instant::now());
+    assert_eq!(viewer.scene().camera().fov_degrees, 180.0);
+}
