@@ -48,6 +48,7 @@ impl Screen {
         let _one_at_a_time = STARTING.lock().unwrap_or_else(PoisonError::into_inner);
         let mut server = Command::new("Xvfb")
             .args([
+                "-noreset",
                 "-displayfd",
                 "1",
                 "-screen",
@@ -239,7 +240,7 @@ impl Window {
             let now = self.picture();
             same = if now == last { same + 1 } else { 0 };
             last = now;
-            same == 6
+            same == 12
         });
         last
     }

@@ -39,7 +39,7 @@ fn a_saved_view_is_rendered_to_the_picture_that_was_seen() {
         let folder = with_tables();
         fs::write(folder.path().join("view-0001.toml"), "mine").unwrap();
         let window = Window::open_in(folder, &[name, SIZE_OPTION]);
-        let first = window.shows_what("a picture", |picture| {
+        window.shows_what("a picture", |picture| {
             picture.bytes.iter().any(|&byte| byte > 0)
         });
         if !keys.is_empty() {
@@ -48,9 +48,6 @@ fn a_saved_view_is_rendered_to_the_picture_that_was_seen() {
         window.drag(1, (160, 90), (167, 79));
         window.drag(3, (160, 90), (150, 95));
         window.hand("click 4 click 4 key bracketright");
-        window.shows_what("another picture", |picture| *picture != first);
-        // The camera is at rest when the picture stays.
-        let seen = window.at_rest();
         window.hand("key s key p");
         let toml = written(&window, "view-0002.toml");
         let picture = written(&window, "view-0001.png");
@@ -61,7 +58,8 @@ fn a_saved_view_is_rendered_to_the_picture_that_was_seen() {
             rendered(here, "view-0002.toml", "again.png") == picture,
             "{name} {keys}"
         );
-        assert!(read(&here.join("again.png")) == seen, "{name} {keys}");
+        // Once the message about the file is gone.
+        window.shows(&read(&here.join("again.png")));
     }
 }
 
