@@ -184,7 +184,7 @@ mod tests {
             let scene = Scene::builtin(name).unwrap();
             let ImageSize { width, height } = scene.image();
             let start = Navigator::new(&scene);
-            let fov = fov.min(start.fov_degrees());
+            let fov = start.fov_degrees().min(fov);
             let ahead = spec(&scene).ahead();
             assert!(ahead.is_beside(&spec(&scene)));
             for (right, down) in [

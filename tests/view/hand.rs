@@ -61,7 +61,7 @@ fn before_a_sky_a_drag_sideways_turns_the_sky() {
     }
     let window = Window::open("stars");
     let turned = drawn(&steered("stars", |navigator| {
-        navigator.turn(25.0 * TURN, 0.0)
+        navigator.turn(25.0 * TURN, 0.0);
     }));
     window.shows(&drawn(&steered("stars", |_| {})));
     window.drag(1, MIDDLE, (185, 90));

@@ -115,7 +115,7 @@ impl<'a> Bitmap<'a> {
         let share = u32::from(share);
         let channel = |shift: u32| {
             let mixed = (colour >> shift & 255) * share + (*below >> shift & 255) * (255 - share);
-            (mixed + 127) / 255 << shift
+            ((mixed + 127) / 255) << shift
         };
         *below = channel(16) | channel(8) | channel(0);
     }

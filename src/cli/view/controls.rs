@@ -4,10 +4,6 @@ use std::fmt::Write as _;
 
 /// What a key asks for.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(
-    not(feature = "view"),
-    expect(dead_code, reason = "only the window takes keys")
-)]
 pub(super) enum Action {
     /// Multiplies the tangent of half the field of view.
     ScaleFov(f64),

@@ -43,6 +43,9 @@ use super::render::picture_size;
 use super::threads::ThreadArgs;
 use crate::scene::{DEFAULT_SCENE, ImageSize, Override};
 
+const TABLE_HELP: &str = "The table to read, made where it is missing [env: DARKNESS_TABLE] [default: the smallest that \
+    is enough]";
+
 /// Open a window to look around a scene by hand
 ///
 /// The window draws at the display's rate, on the processor alone. It is a part of builds with the feature `view`:
@@ -63,8 +66,7 @@ pub(super) struct ViewArgs {
     /// What the key P writes
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t = PictureFormat::Png)]
     picture_format: PictureFormat,
-    /// The table to read, made where it is missing [env: DARKNESS_TABLE] [default: the smallest that is enough]
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help = TABLE_HELP)]
     table: Option<PathBuf>,
     /// Measure this machine: turn the camera for N frames, as fast as they are drawn, print how many a second there
     /// were, and close the window

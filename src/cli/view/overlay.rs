@@ -160,21 +160,22 @@ impl Overlay {
 /// The lines of the figures.
 fn figures(viewer: &Viewer, measured: &Measured<'_>) -> Vec<String> {
     let navigator = viewer.navigator();
+    let rate = match measured.rate {
+        Some(rate) => format!("{rate:.0} frames/s"),
+        None => "at rest".into(),
+    };
+    let coarseness = match measured.coarseness {
+        Coarseness::FULL => String::new(),
+        Coarseness { reduction: 1, .. } => ", hard edges".into(),
+        Coarseness { reduction, .. } => format!(", at 1/{reduction} of the size"),
+    };
     let mut lines = vec![
-        match measured.rate {
-            Some(rate) => format!("{rate:.0} frames/s"),
-            None => "at rest".into(),
-        },
+        rate + &coarseness,
         format!("radius {:.4}", navigator.radius()),
         format!("inclination {:.2}°", navigator.inclination()),
         format!("field of view {:.4}°", navigator.fov_degrees()),
         format!("shows {}", viewer.shown().name()),
     ];
-    match measured.coarseness {
-        Coarseness::FULL => {}
-        Coarseness { reduction: 1, .. } => lines[0] += ", hard edges",
-        Coarseness { reduction, .. } => lines[0] += &format!(", at 1/{reduction} of the size"),
-    }
     if let Some(order) = viewer.order() {
         lines.push(format!("order {order} alone"));
     }

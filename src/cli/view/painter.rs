@@ -14,11 +14,12 @@ use super::false_colour::ColourScale;
 use super::pace::Coarseness;
 use super::shown::Shown;
 use crate::orbit::exact::Exact;
+use crate::orbit::path::SweptAngles;
 use crate::render::needs::Needs;
 use crate::render::{Form, FrameMemory, Pixels, Plane, RenderError, Renderer};
 use crate::scene::{Layer, LayerSet, Scene, Sky, View};
 use crate::sky::SkySource;
-use crate::table::{Lookup, Spec};
+use crate::table::Spec;
 
 /// The most memory that a sky may take.
 const SKY_MEMORY: ByteSize = ByteSize(4 << 30);
@@ -68,35 +69,25 @@ fn needed(scene: &Scene, form: Form) -> usize {
     place.unwrap_or(METHODS - 1)
 }
 
-/// A renderer of one method.
-enum Drawer<'a> {
-    Table(Renderer<Lookup<'a>>),
-    Exact(Renderer<Exact>),
+/// Draws scenes with a renderer of one method.
+type Drawer<'a> = Box<dyn FnMut(&Scene, &mut FrameMemory) -> Result<(), RenderError> + 'a>;
+
+fn drawer<'a>(method: &'a Method, sky: Option<&(Sky, Arc<SkySource>)>) -> Drawer<'a> {
+    match method {
+        Method::Table(table) => drawer_of(Renderer::new(table), sky),
+        _ => drawer_of(Renderer::with_angles(Exact), sky),
+    }
 }
 
-impl<'a> Drawer<'a> {
-    fn new(method: &'a Method, sky: Option<&(Sky, Arc<SkySource>)>) -> Self {
-        macro_rules! with_sky {
-            ($renderer:expr) => {
-                match sky {
-                    Some((sky, source)) => $renderer.with_sky(sky.clone(), Arc::clone(source)),
-                    None => $renderer,
-                }
-            };
-        }
-        match method {
-            Method::Table(table) => Self::Table(with_sky!(Renderer::new(table))),
-            _ => Self::Exact(with_sky!(Renderer::with_angles(Exact))),
-        }
-    }
-
-    fn draw(&mut self, scene: &Scene, memory: &mut FrameMemory) -> Result<(), RenderError> {
-        match self {
-            Self::Table(renderer) => renderer.draw(scene, memory),
-            Self::Exact(renderer) => renderer.draw(scene, memory),
-        }
-        .map(|_| ())
-    }
+fn drawer_of<'a, A: SweptAngles + 'a>(
+    renderer: Renderer<A>,
+    sky: Option<&(Sky, Arc<SkySource>)>,
+) -> Drawer<'a> {
+    let mut renderer = match sky {
+        Some((sky, source)) => renderer.with_sky(sky.clone(), Arc::clone(source)),
+        None => renderer,
+    };
+    Box::new(move |scene, memory| renderer.draw(scene, memory).map(|_| ()))
 }
 
 /// What is to be drawn.
@@ -198,7 +189,7 @@ impl<'a> ViewPainter<'a> {
                 each(pixels, bytes, 1, |grey| u32::from(grey[0]) * 0x0001_0101);
             }
             (Pixels::Rgb8(bytes), _) => {
-                each(pixels, bytes, 3, |rgb| colour([rgb[0], rgb[1], rgb[2]]))
+                each(pixels, bytes, 3, |rgb| colour([rgb[0], rgb[1], rgb[2]]));
             }
             (Pixels::Planes([plane]), Shown::Channel(layer, component)) => {
                 let channels = layer.channels();
@@ -215,7 +206,7 @@ impl<'a> ViewPainter<'a> {
         if let Some(order) = look.order.filter(|_| look.scene.disk().is_some())
             && let Some((_, drawer)) = &mut self.drawer
         {
-            drawer.draw(look.scene, &mut self.orders)?;
+            drawer(look.scene, &mut self.orders)?;
             if let Pixels::Planes([Plane { values, .. }]) = self.orders.pixels() {
                 for (pixel, &seen) in pixels.iter_mut().zip(values) {
                     if seen != order as f32 {
@@ -249,10 +240,10 @@ impl<'a> ViewPainter<'a> {
         if is_at_rest || self.drawer.is_none() {
             let place = needed(scene, form);
             let method = self.methods.open(place)?;
-            self.drawer = Some((place, Drawer::new(method, self.sky.as_ref())));
+            self.drawer = Some((place, drawer(method, self.sky.as_ref())));
         }
         if let Some((_, drawer)) = &mut self.drawer {
-            drawer.draw(scene, &mut self.memory)?;
+            drawer(scene, &mut self.memory)?;
         }
         Ok(())
     }

@@ -1,5 +1,7 @@
 //! What the pointer is over.
 
+use std::fmt::Write as _;
+
 use crate::light::flux;
 use crate::orbit::exact::Exact;
 use crate::orbit::{EventKind, Fate, Orbits, Ray};
@@ -29,7 +31,7 @@ pub(super) fn pointed(scene: &Scene, (x, y): (f64, f64)) -> Option<String> {
         if let Some(Light::BlackBody { temperature }) = scene.light() {
             // (F/F_max)^¼, as the amplitude is its square times g².
             let emitted = temperature * libm::sqrt(flux::signed_root(sight.u).max(0.0));
-            text += &format!(", temperature {:.0} K", emitted * sight.redshift);
+            let _ = write!(text, ", temperature {:.0} K", emitted * sight.redshift);
         }
         return Some(text);
     }

@@ -92,7 +92,7 @@ fn the_camera_comes_to_rest() {
     viewer.roll(1.0, now);
     viewer.take_change();
     let rest = viewer.next(now).unwrap();
-    viewer.pass(rest - Duration::from_millis(1));
+    viewer.pass(now + REST / 2);
     assert!(viewer.is_moving() && !viewer.take_change());
     viewer.pass(rest);
     assert!(!viewer.is_moving() && viewer.take_change());
