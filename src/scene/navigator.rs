@@ -41,6 +41,9 @@ const WIDEST_FISHEYE: f64 = 360.0;
 /// Below this sine of the inclination a camera is at a pole, where every azimuth is right.
 const AT_POLE: f64 = 1e-9;
 
+/// How many neighbours of a position are tried, in each component and direction.
+const NEIGHBOURS: u32 = 256;
+
 /// The number of halvings by which the end of a step is found.
 const HALVINGS: u32 = 40;
 
@@ -299,27 +302,20 @@ impl Navigator {
     }
 }
 
-/// Returns the position in a direction whose length rounds to exactly `radius`, where one of its neighbours has it: the
-/// curves of one radius serve all frames of a turn.
+/// Returns the position in a direction whose length rounds to exactly `radius`, where a neighbour in one component has
+/// it (all but one in some hundreds do): the curves of one radius serve all frames of a turn.
 fn at_radius(outward: DVec3, radius: f64) -> DVec3 {
-    const STEPS: [i32; 5] = [0, -1, 1, -2, 2];
     let position = direction(outward) * radius;
-    let moved = |component: f64, steps: i32| match steps {
-        _ if component == 0.0 => component,
-        -2 => component.next_down().next_down(),
-        -1 => component.next_down(),
-        1 => component.next_up(),
-        2 => component.next_up().next_up(),
-        _ => component,
-    };
-    for x in STEPS {
-        for y in STEPS {
-            for z in STEPS {
-                let neighbour = DVec3::new(
-                    moved(position.x, x),
-                    moved(position.y, y),
-                    moved(position.z, z),
-                );
+    for steps in 0..NEIGHBOURS {
+        for axis in 0..3 {
+            let step = position[axis].next_up() - position[axis];
+            // Exact zeros are planes that the camera stays in.
+            if position[axis] == 0.0 {
+                continue;
+            }
+            for sign in [1.0, -1.0] {
+                let mut neighbour = position;
+                neighbour[axis] += sign * f64::from(steps) * step;
                 if norm(neighbour) == radius {
                     return neighbour;
                 }

