@@ -6,10 +6,12 @@ mod interleaved;
 
 use core::cell::RefCell;
 
+use darkness::Renderer;
 use darkness::isoradial::{CurveSpec, Isoradials};
 use darkness::orbit::exact::Exact;
 use darkness::render::frame::{Threads, Workspace};
-use darkness::scene::{Scene, View, builtins};
+use darkness::render::{Form, FrameMemory};
+use darkness::scene::{Camera, Projection, Region, Scene, View, builtins};
 use darkness::table::{Lookup, Spec, Table};
 use interleaved::{Contender, compare};
 
@@ -32,7 +34,102 @@ fn main() {
         if let Ok(scene) = large {
             frames_of("classic, 7680 × 4320", &scene, &lookup, 21);
         }
+        projections(&table);
+        crop_of_a_large_picture(&table);
     });
+}
+
+/// Whole frames of `classic` with smooth edges: a flat one, the whole sphere, a dome. A renderer keeps the curves.
+fn projections(table: &Table) {
+    let Ok(classic) = Scene::builtin("classic") else {
+        return;
+    };
+    let scene = |projection, fov_degrees, width, height| {
+        let camera = Camera {
+            projection,
+            fov_degrees,
+            ..*classic.camera()
+        };
+        let scene = classic.clone().with_size(width, height);
+        scene.and_then(|scene| scene.with_camera(camera))
+    };
+    let (Ok(sphere), Ok(dome)) = (
+        scene(Projection::Equirectangular, 180.0, 4096, 2048),
+        scene(Projection::Fisheye, 180.0, 4096, 4096),
+    ) else {
+        return;
+    };
+    let draw = |scene: Scene| {
+        let mut renderer = Renderer::new(table);
+        let mut memory = FrameMemory::new(Form::Grey8);
+        move || {
+            let drawn = renderer.draw(&scene, &mut memory);
+            drawn.map_or(0.0, |report| report.error.total())
+        }
+    };
+    compare(
+        "whole frames in each projection, curves given",
+        1,
+        51,
+        &mut [
+            Contender {
+                name: "perspective, 1920 × 1080",
+                run: Box::new(draw(classic.clone())),
+            },
+            Contender {
+                name: "equirectangular, 4096 × 2048",
+                run: Box::new(draw(sphere)),
+            },
+            Contender {
+                name: "fisheye of 180°, 4096 × 4096",
+                run: Box::new(draw(dome)),
+            },
+        ],
+    );
+}
+
+/// A part of a picture of 65,536 × 65,536 pixels, on the disk's edge. A renderer keeps the curves, and a light's map.
+fn crop_of_a_large_picture(table: &Table) {
+    let part = Region {
+        left: 12_768,
+        top: 17_920,
+        width: 64,
+        height: 64,
+    };
+    let scene = |name| {
+        let scene = Scene::builtin(name).and_then(|scene| scene.with_size(65_536, 65_536));
+        scene.and_then(|scene| scene.with_crop(Some(part)))
+    };
+    let (Ok(mask), Ok(lit)) = (scene("classic"), scene("lit")) else {
+        return;
+    };
+    let hard_mask = mask.clone().with_antialias(false);
+    let draw = |scene: Scene, form: Form| {
+        let (mut renderer, mut memory) = (Renderer::new(table), FrameMemory::new(form));
+        move || {
+            let drawn = renderer.draw(&scene, &mut memory);
+            drawn.map_or(0.0, |report| report.error.total())
+        }
+    };
+    compare(
+        "64 × 64 pixels of 65,536 × 65,536, curves given",
+        1,
+        51,
+        &mut [
+            Contender {
+                name: "hard edges",
+                run: Box::new(draw(hard_mask, Form::Grey8)),
+            },
+            Contender {
+                name: "smooth edges",
+                run: Box::new(draw(mask, Form::Grey8)),
+            },
+            Contender {
+                name: "colour",
+                run: Box::new(draw(lit, Form::Rgb8)),
+            },
+        ],
+    );
 }
 
 fn frames_of(name: &str, scene: &Scene, lookup: &Lookup<'_>, rounds: usize) {

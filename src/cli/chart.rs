@@ -40,7 +40,7 @@ pub(super) struct ChartArgs {
 
 /// Runs the verb.
 pub(super) fn run(args: &ChartArgs, report: Report) -> anyhow::Result<()> {
-    let scene = Scene::load(&args.scene)?;
+    let scene = Scene::load(&args.scene)?.with_crop(None)?;
     if scene.disk().is_none() {
         return Err(misuse(ChartError::NoDisk.to_string()));
     }

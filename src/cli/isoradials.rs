@@ -154,7 +154,7 @@ pub(super) fn run(args: &IsoradialsArgs, report: Report) -> anyhow::Result<()> {
     let file = match format {
         FigureFormat::Svg => {
             let paper = picture.as_deref().map_or(Paper::White, Paper::Png);
-            svg(&contours, scene.image(), paper).into_bytes()
+            svg(&contours, &scene, paper).into_bytes()
         }
         FigureFormat::Csv => {
             let mut file = Vec::new();
@@ -248,7 +248,7 @@ fn read_picture(path: &Path, scene: &Scene) -> anyhow::Result<Vec<u8>> {
     let ImageSize {
         width: w,
         height: h,
-    } = scene.image();
+    } = scene.size();
     if u64::from(width) * u64::from(h) != u64::from(height) * u64::from(w) {
         return Err(misuse(format!(
             "{name}: this picture has {width} × {height} pixels and the scene's has {w} × {h}; give --over a picture \

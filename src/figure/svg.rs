@@ -5,7 +5,7 @@ use std::fmt::Write;
 use kurbo::{BezPath, PathEl, Point};
 
 use super::contour::Contour;
-use crate::scene::ImageSize;
+use crate::scene::{ImageSize, Region, Scene};
 
 /// Curves are as wide as this share of the picture's height.
 const STROKE: f64 = 1.0 / 540.0;
@@ -15,14 +15,15 @@ const STROKE: f64 = 1.0 / 540.0;
 pub enum Paper<'a> {
     /// White paper, with dark curves.
     White,
-    /// A PNG file, which fills the picture, with coloured curves.
+    /// A PNG file, which fills what is drawn of the picture, with coloured curves.
     Png(&'a [u8]),
 }
 
-/// Returns curves as an SVG document, one `path` each. Those of the direct image are solid, those of higher
-/// orders dashed. The `class` of a path names its quantity and whether it is `direct` or a `ghost`. Its `title` tells
-/// its level and order.
-pub fn svg(contours: &[Contour], size: ImageSize, paper: Paper<'_>) -> String {
+/// Returns curves in the drawn part of a scene's picture as an SVG document, one `path` each. Those of the direct image
+/// are solid, those of higher orders dashed. The `class` of a path names its quantity and whether it is `direct` or a
+/// `ghost`. Its `title` tells its level and order.
+pub fn svg(contours: &[Contour], scene: &Scene, paper: Paper<'_>) -> String {
+    let size = scene.image();
     let colours = match paper {
         Paper::White => ["#000", "#b2182b", "#2166ac"],
         // These are seen before black and before white.
@@ -40,6 +41,11 @@ pub fn svg(contours: &[Contour], size: ImageSize, paper: Paper<'_>) -> String {
         2.5 * stroke,
     );
     let ImageSize { width, height } = size;
+    let part = scene.region();
+    let place = match scene.crop() {
+        Some(Region { left, top, .. }) => format!(" x=\"{left}\" y=\"{top}\""),
+        None => String::new(),
+    };
     match paper {
         Paper::White => push(
             &mut body,
@@ -48,7 +54,9 @@ pub fn svg(contours: &[Contour], size: ImageSize, paper: Paper<'_>) -> String {
         Paper::Png(bytes) => push(
             &mut body,
             format_args!(
-                "<image width=\"{width}\" height=\"{height}\" href=\"data:image/png;base64,{}\"/>\n",
+                "<image{place} width=\"{}\" height=\"{}\" href=\"data:image/png;base64,{}\"/>\n",
+                part.width,
+                part.height,
                 base64(bytes)
             ),
         ),
@@ -65,23 +73,31 @@ pub fn svg(contours: &[Contour], size: ImageSize, paper: Paper<'_>) -> String {
             ),
         );
     }
-    document(size, &body)
+    document(part, &body)
 }
 
-/// Returns the filled outline of a disk as an SVG document: white on black, as its mask.
-pub fn outline_svg(outline: &BezPath, size: ImageSize) -> String {
-    let ImageSize { width, height } = size;
+/// Returns the filled outline of a disk in the drawn part of a scene's picture as an SVG document: white on black, as
+/// its mask.
+pub fn outline_svg(outline: &BezPath, scene: &Scene) -> String {
+    let ImageSize { width, height } = scene.image();
     let body = format!(
         "<rect width=\"{width}\" height=\"{height}\" fill=\"#000\"/>\n<path fill=\"#fff\" d=\"{}\"/>\n",
         path_data(outline)
     );
-    document(size, &body)
+    document(scene.region(), &body)
 }
 
-fn document(ImageSize { width, height }: ImageSize, body: &str) -> String {
+/// Returns a document that shows a part of the picture, whose body is in the whole picture's coordinates.
+fn document(part: Region, body: &str) -> String {
+    let Region {
+        left,
+        top,
+        width,
+        height,
+    } = part;
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-         viewBox=\"0 0 {width} {height}\">\n<desc>darkness {}</desc>\n{body}</svg>\n",
+         viewBox=\"{left} {top} {width} {height}\">\n<desc>darkness {}</desc>\n{body}</svg>\n",
         env!("CARGO_PKG_VERSION")
     )
 }

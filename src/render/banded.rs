@@ -4,10 +4,10 @@
 
 use super::arc::EdgeArc;
 use super::cells::{Cells, ONE, fixed};
+use super::edge_map::EdgeMap;
 use super::path::OutlinePath;
-use super::projection::Projection;
 use crate::isoradial::{Boundary, Isoradials};
-use crate::scene::View;
+use crate::scene::{Region, View};
 
 /// The largest error of an arc for smooth edges, in pixels.
 const SMOOTH: f64 = 1.0 / 512.0;
@@ -33,6 +33,9 @@ pub(super) struct BandedOutline {
     doubt: f64,
     /// The winding number along the picture's left side, without the path's crossings of it.
     left: i32,
+    /// The first column and the first row of the part that is drawn, and its size.
+    left_column: usize,
+    top: usize,
     width: usize,
     height: usize,
     /// Rows of a band.
@@ -57,17 +60,16 @@ impl BandedOutline {
     pub(super) fn trace(
         &mut self,
         half: &mut OutlinePath,
-        projection: &Projection<'_>,
+        map: &EdgeMap<'_>,
         smooth: bool,
         weight: impl Fn(&Boundary) -> i32 + Sync,
         on_all_threads: bool,
     ) {
         let tolerance = if smooth { SMOOTH } else { HARD };
-        let rounding = projection.curves.error().rounding;
+        let rounding = map.curves.error().rounding;
         self.doubt = 2.0 * (tolerance + rounding) + 2.0 / ONE as f64;
         self.smooth = smooth;
-        self.path
-            .draw(half, projection, tolerance, weight, on_all_threads);
+        self.path.draw(half, map, tolerance, weight, on_all_threads);
     }
 
     /// Whether the outline is more than rounding.
@@ -75,17 +77,29 @@ impl BandedOutline {
         curves.error().rounding <= COARSE && self.path.is_complete()
     }
 
-    /// Sorts the path's arcs into bands of `rows` rows: counts those of each band, and places them from the last to the
-    /// first. `sees` tells what the outline encloses, at one place.
-    pub(super) fn sort(&mut self, view: &View, rows: usize, sees: impl Fn((f64, f64)) -> bool) {
-        (self.width, self.height) = (view.width() as usize, view.height() as usize);
+    /// Sorts the path's arcs into bands of `rows` rows of a part of the picture: counts those of each band, and places
+    /// them from the last to the first. `sees` tells what the outline encloses, at one place.
+    ///
+    /// The path is that of the whole picture. What of it is to the left of the part counts along the part's left side,
+    /// so that each pixel gets the same sums as in the whole picture.
+    pub(super) fn sort(
+        &mut self,
+        view: &View,
+        part: Region,
+        rows: usize,
+        sees: impl Fn((f64, f64)) -> bool,
+    ) {
+        (self.left_column, self.top) = (part.left as usize, part.top as usize);
+        (self.width, self.height) = (part.width as usize, part.height as usize);
         self.rows = rows;
         self.left = left(&self.path, view, sees);
-        let height = self.height;
-        let band = |row: f64| (row.max(0.0) as usize).min(height - 1) / rows;
+        let (top, height) = (f64::from(part.top), self.height);
+        let band = |row: f64| ((row - top).max(0.0) as usize).min(height - 1) / rows;
         let bands_of = |arc: &EdgeArc| {
             let (first, last) = arc.rows();
-            band(first)..=band(last + 1.0 / ONE as f64)
+            let last = last + 1.0 / ONE as f64;
+            let is_in = last >= top && first <= top + height as f64;
+            (band(first)..=band(last)).filter(move |_| is_in)
         };
         let bands = height.div_ceil(rows);
         self.firsts.clear();
@@ -110,13 +124,14 @@ impl BandedOutline {
         }
     }
 
-    /// Draws a band's arcs into cells. Returns the band's first row.
+    /// Draws a band's arcs into cells. Returns the band's first row in the picture.
     pub(super) fn draw(&self, band: usize, scratch: &mut BandScratch) -> usize {
-        let top = band * self.rows;
-        let rows = self.rows.min(self.height - top);
+        let above = band * self.rows;
+        let top = self.top + above;
+        let rows = self.rows.min(self.height - above);
         scratch.rows = rows;
         let cells = &mut scratch.cells;
-        cells.set(self.width, top, rows);
+        cells.set((self.left_column, top), (self.width, rows));
         scratch.doubtful.clear();
         for &arc in &self.sorted[self.firsts[band]..self.firsts[band + 1]] {
             let arc = &self.path.arcs[arc as usize];

@@ -30,13 +30,14 @@ pub(super) struct Cells {
     words: usize,
     pub(super) width: usize,
     pub(super) rows: usize,
-    /// The first row's place in the picture.
+    /// The first column's and the first row's place in the picture.
+    pub(super) left: i64,
     pub(super) top: i64,
 }
 
 impl Cells {
-    /// Makes room for `rows` rows of `width` pixels from row `top` of the picture on. All cells are empty.
-    pub(super) fn set(&mut self, width: usize, top: usize, rows: usize) {
+    /// Makes room for `rows` rows of `width` pixels from a column and a row of the picture on. All cells are empty.
+    pub(super) fn set(&mut self, (left, top): (usize, usize), (width, rows): (usize, usize)) {
         let stride = width + 1;
         let words = stride.div_ceil(64);
         if (self.stride, self.words) != (stride, words) {
@@ -46,7 +47,7 @@ impl Cells {
         self.sums.resize(self.sums.len().max(stride * rows), 0);
         self.marks.resize(self.marks.len().max(words * rows), 0);
         (self.stride, self.words, self.width, self.rows) = (stride, words, width, rows);
-        self.top = top as i64;
+        (self.left, self.top) = (left as i64, top as i64);
     }
 
     /// Adds a height and an area, of an arc of weight 1.
@@ -57,13 +58,19 @@ impl Cells {
         self.marks[row * self.words + column / 64] |= 1 << (column % 64);
     }
 
+    /// x in 2⁻¹⁶ pixels from the first column.
+    #[inline(always)]
+    pub(super) fn across(&self, x: f64) -> i64 {
+        fixed(x) - (self.left << BITS)
+    }
+
     /// y in 2⁻¹⁶ pixels from the first row.
     #[inline(always)]
     pub(super) fn down(&self, y: f64) -> i64 {
         fixed(y) - (self.top << BITS)
     }
 
-    /// The right side of the picture, and the lower side of the rows, in 2⁻¹⁶ pixels.
+    /// The right side and the lower side of the rows, in 2⁻¹⁶ pixels.
     pub(super) fn ends(&self) -> (i64, i64) {
         ((self.width as i64) << BITS, (self.rows as i64) << BITS)
     }

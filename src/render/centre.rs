@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::frame::MaskSample;
 use crate::isoradial::Isoradials;
-use crate::scene::View;
+use crate::scene::{Region, View};
 
 /// Fills a buffer that the frame fits, evaluating each pixel by itself.
 pub(super) fn fill_every_pixel<T: MaskSample>(
@@ -13,11 +13,17 @@ pub(super) fn fill_every_pixel<T: MaskSample>(
     pixels: &mut [T],
     stride: usize,
 ) {
-    let width = view.width() as usize;
+    let Region {
+        left, top, width, ..
+    } = view.region();
     let rows = pixels.par_chunks_mut(stride).enumerate();
     rows.for_each(|(row, pixels)| {
-        for (column, pixel) in pixels[..width].iter_mut().enumerate() {
-            let seen = front(view, curves, (column as f64 + 0.5, row as f64 + 0.5));
+        for (column, pixel) in pixels[..width as usize].iter_mut().enumerate() {
+            let place = (
+                (left as usize + column) as f64 + 0.5,
+                (top as usize + row) as f64 + 0.5,
+            );
+            let seen = front(view, curves, place);
             *pixel = if seen.is_some() {
                 T::WHITE
             } else {

@@ -16,7 +16,7 @@ const MOST_STEPS: i64 = 16;
 /// How many columns of a flat arc are looked at together.
 pub(super) const CHUNK: i64 = 32;
 
-/// A point (x, y) in 2⁻¹⁶ pixels, y from the first row of cells.
+/// A point (x, y) in 2⁻¹⁶ pixels from the first column and the first row of cells.
 #[derive(Debug, Clone, Copy)]
 struct Point {
     x: i64,
@@ -53,52 +53,56 @@ impl Cells {
         }
         let step = ONE / steps(arc);
         let (top, scale) = (self.top as f64, 1.0 / ONE as f64);
-        let at = |y: i64| Point {
-            x: fixed(arc.at(top + y as f64 * scale)),
+        let at = |cells: &Self, y: i64| Point {
+            x: cells.across(arc.at(top + y as f64 * scale)),
             y,
         };
         // At its ends an arc is where the next one begins.
         let mut from = if begin == first {
             Point {
-                x: fixed(arc.v.0),
+                x: self.across(arc.v.0),
                 y: first,
             }
         } else {
-            at(first)
+            at(self, first)
         };
         let mut y = (first / step + 1) * step;
         while y < last {
-            let to = at(y);
+            let to = at(self, y);
             self.cover_in_row(from, to, arc.weight);
             from = to;
             y += step;
         }
         let to = if end == last {
             Point {
-                x: fixed(arc.v.1),
+                x: self.across(arc.v.1),
                 y: last,
             }
         } else {
-            at(last)
+            at(self, last)
         };
         self.cover_in_row(from, to, arc.weight);
     }
 
     fn cover_flat(&mut self, arc: &EdgeArc) {
-        let (begin, end) = (fixed(arc.u.0), fixed(arc.u.1));
+        let (begin, end) = (self.across(arc.u.0), self.across(arc.u.1));
         let (first, last) = (begin.max(0), end.min(self.ends().0));
-        if first > last {
-            return;
-        }
-        let step = ONE / steps(arc);
-        let scale = 1.0 / ONE as f64;
-        let at = |cells: &Self, x: i64| Point {
-            x,
-            y: cells.down(arc.at(x as f64 * scale)),
-        };
         let mut from = Point {
             x: first,
             y: self.down(arc.v.0),
+        };
+        if first > last {
+            if end < 0 {
+                let y = self.down(arc.v.1);
+                self.cover_in_column(from, Point { x: first, y }, arc.weight);
+            }
+            return;
+        }
+        let step = ONE / steps(arc);
+        let (left, scale) = (self.left as f64, 1.0 / ONE as f64);
+        let at = |cells: &Self, x: i64| Point {
+            x,
+            y: cells.down(arc.at(left + x as f64 * scale)),
         };
         if begin < first {
             // What is beyond the left side is laid along it.
@@ -159,7 +163,7 @@ impl Cells {
     }
 
     /// Adds a chord that goes down by `height` in one row from one x to another. What of it is beyond a side of the
-    /// picture is laid along that side.
+    /// cells is laid along that side.
     fn cover_across(&mut self, row: usize, (from, to): (i64, i64), height: i64, weight: i32) {
         let right = self.ends().0;
         let rises = to > from;
@@ -167,7 +171,7 @@ impl Cells {
         let (mut at, mut covered) = (from, 0);
         while covered != height {
             let column = if rises { at >> BITS } else { (at - 1) >> BITS };
-            // The next column's side, or the picture's.
+            // The next column's side, or that of the cells.
             let side = if rises {
                 if at < 0 { 0 } else { (column + 1) << BITS }
             } else if at > right {

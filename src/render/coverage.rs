@@ -11,7 +11,7 @@ use crate::scene::View;
 /// [`RenderError::Memory`]
 pub fn render(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> {
     let mut pixels = blank(view)?;
-    render_into(view, curves, &mut pixels, view.width() as usize)?;
+    render_into(view, curves, &mut pixels, view.region().width as usize)?;
     Ok(pixels)
 }
 

@@ -5,7 +5,7 @@
 //! down by whole rows of centres, and turns these on from there. The parts fit together where arcs do.
 
 use super::arc::EdgeArc;
-use super::cells::{BITS, Cells, ONE, fixed, nearest};
+use super::cells::{BITS, Cells, ONE, nearest};
 use super::cover::CHUNK;
 
 impl Cells {
@@ -21,7 +21,7 @@ impl Cells {
             let (column, row) = (nearest(x - 0.5), nearest(y - 0.5));
             let (across, down) = (column as f64 + 0.5 - x, row as f64 + 0.5 - y);
             if across.abs().max(down.abs()) <= doubt {
-                self.doubt(column, row - self.top, doubtful);
+                self.doubt(column - self.left, row - self.top, doubtful);
             }
         }
     }
@@ -52,8 +52,9 @@ impl Cells {
             let x = arc.at((self.top + row) as f64 + 0.5);
             // The first column whose centre is to the right.
             let column = nearest(x);
-            self.turn_on(row, column, arc.weight);
             let after = column as f64 + 0.5 - x;
+            let column = column - self.left;
+            self.turn_on(row, column, arc.weight);
             if after <= doubt {
                 self.doubt(column, row, doubtful);
             } else if 1.0 - after <= doubt {
@@ -63,8 +64,9 @@ impl Cells {
     }
 
     fn cross_flat(&mut self, arc: &EdgeArc, doubt: f64, doubtful: &mut Vec<(u32, u32)>) {
-        let first = centres_above(fixed(arc.u.0)).max(0);
-        let last = centres_above(fixed(arc.u.1)).min(self.width as i64);
+        let first = centres_above(self.across(arc.u.0)).max(0);
+        let last = centres_above(self.across(arc.u.1)).min(self.width as i64);
+        let centre = |column: i64, left: i64| (left + column) as f64 + 0.5;
         let rows = self.rows as i64;
         let mut level = centres_above(self.down(arc.v.0));
         let reach = arc.off_chord(CHUNK as f64);
@@ -72,14 +74,14 @@ impl Cells {
         while column < last {
             if column % CHUNK == 0 && column + CHUNK < last {
                 // Whole chunks that do not come near the rows are passed over.
-                let next = self.down(arc.at((column + CHUNK) as f64 + 0.5));
+                let next = self.down(arc.at(centre(column + CHUNK, self.left)));
                 if self.are_out((level << BITS, next), reach) {
                     level = centres_above(next);
                     column += CHUNK;
                     continue;
                 }
             }
-            let y = arc.at(column as f64 + 0.5) - self.top as f64;
+            let y = arc.at(centre(column, self.left)) - self.top as f64;
             // The first row whose centre is below.
             let next = nearest(y);
             self.turn_on_between(level, next, column, arc.weight);

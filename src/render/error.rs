@@ -1,7 +1,7 @@
 //! Why a frame could not be drawn, and the memory that it takes.
 
 use crate::orbit::OrbitError;
-use crate::scene::View;
+use crate::scene::{Region, View};
 
 /// Why a frame could not be drawn.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -67,7 +67,7 @@ pub(super) fn make_room<T: Copy + Default>(
     channels: usize,
     samples: &mut Vec<T>,
 ) -> Result<(), RenderError> {
-    let (width, height) = (view.width(), view.height());
+    let Region { width, height, .. } = view.region();
     let length = u64::from(width) * u64::from(height) * channels as u64;
     let bytes = length * size_of::<T>() as u64;
     let memory = || RenderError::Memory {
@@ -98,7 +98,8 @@ pub(super) fn check_buffer<T>(
     samples: &[T],
     stride: usize,
 ) -> Result<usize, RenderError> {
-    let (width, height) = (view.width() as usize, view.height() as usize);
+    let part = view.region();
+    let (width, height) = (part.width as usize, part.height as usize);
     let row = channels * width;
     let needed = stride.saturating_mul(height - 1).saturating_add(row);
     if stride < row || samples.len() < needed {

@@ -8,12 +8,12 @@ use super::WHITE;
 use super::banded::{BandScratch, BandedOutline};
 use super::cells::{Cells, ONE};
 use super::centre::{fill_every_pixel, front};
+use super::edge_map::EdgeMap;
 use super::error::{RenderError, check_buffer};
 use super::path::OutlinePath;
-use super::projection::Projection;
 use super::shaded::ShadedWorkspace;
 use crate::isoradial::{Boundary, Isoradials};
-use crate::scene::View;
+use crate::scene::{Region, View};
 
 /// Memory for the cells of a band, in bytes: what the nearer caches hold.
 const BAND: usize = 1 << 20;
@@ -78,16 +78,19 @@ impl Workspace {
         stride: usize,
     ) -> Result<(), RenderError> {
         let needed = check_buffer(view, 1, pixels, stride)?;
-        let projection = Projection::new(view, curves);
+        let map = EdgeMap::new(view, curves);
         let count = threads.count();
-        let rows = rows_of_band(view);
+        let part = view.region();
+        let rows = rows_of_band(part);
         let outline = &mut self.outline;
-        outline.trace(&mut self.half, &projection, smooth, covers, count > 1);
+        outline.trace(&mut self.half, &map, smooth, covers, count > 1);
         if !outline.is_meaningful(curves) {
             fill_every_pixel(view, curves, &mut pixels[..needed], stride);
             return Ok(());
         }
-        outline.sort(view, rows, |place| front(view, curves, place).is_some());
+        outline.sort(view, part, rows, |place| {
+            front(view, curves, place).is_some()
+        });
         let frame = Bands {
             view,
             curves,
@@ -130,8 +133,8 @@ pub(super) fn on_threads<S: Send, B: Send>(
 }
 
 /// The rows of a band: as many as the nearer caches hold the cells of.
-fn rows_of_band(view: &View) -> usize {
-    (BAND / (size_of::<i64>() * view.width() as usize)).clamp(1, view.height() as usize)
+fn rows_of_band(part: Region) -> usize {
+    (BAND / (size_of::<i64>() * part.width as usize)).clamp(1, part.height as usize)
 }
 
 /// How much more of the disk there is on the inner side of a boundary than on the other.
@@ -142,18 +145,23 @@ pub(super) fn covers(boundary: &Boundary) -> i32 {
 impl Bands<'_> {
     /// Draws a band.
     fn draw<T: MaskSample>(&self, band: usize, pixels: &mut [T], scratch: &mut BandScratch) {
-        let (width, stride) = (self.view.width() as usize, self.stride);
+        let part = self.view.region();
+        let (width, stride) = (part.width as usize, self.stride);
         let top = self.outline.draw(band, scratch);
         scratch.rows(|cells, row, left| {
             let pixels = &mut pixels[row * stride..][..width];
             fill_row(cells, row, left, pixels);
             let (from, to) = self.view.shown_columns((top + row) as u32);
-            pixels[..from as usize].fill(T::default());
-            pixels[to as usize..].fill(T::default());
+            let within = |column: u32| (column.saturating_sub(part.left) as usize).min(width);
+            pixels[..within(from)].fill(T::default());
+            pixels[within(to)..].fill(T::default());
         });
         for &(column, row) in &scratch.doubtful {
             let (column, row) = (column as usize, row as usize);
-            let place = (column as f64 + 0.5, (top + row) as f64 + 0.5);
+            let place = (
+                (part.left as usize + column) as f64 + 0.5,
+                (top + row) as f64 + 0.5,
+            );
             let is_white = front(self.view, self.curves, place).is_some();
             pixels[row * stride + column] = if is_white { T::WHITE } else { T::default() };
         }

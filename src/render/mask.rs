@@ -13,7 +13,7 @@ use crate::scene::View;
 /// [`RenderError::Memory`]
 pub fn render(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> {
     let mut pixels = blank(view)?;
-    render_into(view, curves, &mut pixels, view.width() as usize)?;
+    render_into(view, curves, &mut pixels, view.region().width as usize)?;
     Ok(pixels)
 }
 
@@ -36,6 +36,6 @@ pub fn render_into(
 /// [`RenderError::Memory`]
 pub fn render_every_pixel(view: &View, curves: &Isoradials) -> Result<Vec<u8>, RenderError> {
     let mut pixels = blank(view)?;
-    fill_every_pixel(view, curves, &mut pixels, view.width() as usize);
+    fill_every_pixel(view, curves, &mut pixels, view.region().width as usize);
     Ok(pixels)
 }

@@ -271,6 +271,10 @@ impl<'a> Mixture<'a> {
                 continue;
             }
             let (low, high) = (self.near(&pair[0]), self.near(&pair[1]));
+            // From within the disk's plane the direct image over a quarter turn is at the camera itself.
+            if !(high.h - low.h).is_finite() {
+                continue;
+            }
             let is_low = low.distance.abs() < high.distance.abs();
             let normal = if is_low { low.normal } else { high.normal };
             let section = Section::new(normal, self.sides);

@@ -22,9 +22,14 @@
 //! along each row gives every pixel's share of the disk. For hard edges each arc turns on the pixels whose centres lie
 //! to its right; centres that are too near to an arc are asked one by one.
 //!
+//! # Parts of pictures
+//! Where a scene names a part of its picture, all places are those of the whole picture and only memory is that of the
+//! part ([`View::region`](crate::scene::View::region)). So the part has the whole picture's bytes: a mask draws the
+//! whole picture's arcs into the cells of the part, and light and data are painted in the whole picture's tiles.
+//!
 //! # Arcs
 //! `arc.rs` derives how far an arc may be off its edge, `path.rs` which parts of the outline are out of the picture,
-//! `cells.rs` how areas add up.
+//! `round.rs` how edges cross the seams of fisheyes and equirectangular pictures, `cells.rs` how areas add up.
 
 mod arc;
 mod banded;
@@ -34,6 +39,7 @@ mod centre;
 mod cover;
 pub mod coverage;
 mod cross;
+mod edge_map;
 mod error;
 mod flux_spline;
 pub mod frame;
@@ -48,7 +54,6 @@ mod patch;
 mod path;
 pub mod pixelwise;
 mod planes;
-mod projection;
 mod renderer;
 mod round;
 mod scene_frame;

@@ -14,9 +14,9 @@ use kurbo::{BezPath, Point, Rect, Shape};
 
 use super::banded::{COARSE, distance};
 use super::centre::front;
+use super::edge_map::EdgeMap;
 use super::frame::covers;
 use super::path::OutlinePath;
-use super::projection::Projection;
 use crate::isoradial::Isoradials;
 use crate::scene::View;
 
@@ -32,10 +32,10 @@ const PLACES: u32 = 16;
 ///
 /// Returns `None` if the curves are more rounding than outline.
 pub fn disk_outline(view: &View, curves: &Isoradials, tolerance: f64) -> Option<BezPath> {
-    let projection = Projection::new(view, curves);
+    let map = EdgeMap::new(view, curves);
     let mut outline = OutlinePath::default();
     let half = &mut OutlinePath::default();
-    outline.draw(half, &projection, tolerance, covers, false);
+    outline.draw(half, &map, tolerance, covers, false);
     if curves.error().rounding > COARSE || !outline.is_complete() {
         return None;
     }

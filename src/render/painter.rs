@@ -6,7 +6,7 @@ use super::ink::{Ink, Part, Quantities, Stretch};
 use super::mixture::Mixture;
 use super::patch::{Misfit, Patch};
 use super::shader::Shader;
-use super::tiles::{Rectangle, Run, Tiled, paint_runs};
+use super::tiles::{Rectangle, Run, TileRow, Tiled, paint_runs};
 
 /// A pixel of the band that an order covers in part.
 #[derive(Debug, Clone, Copy)]
@@ -20,60 +20,44 @@ pub(super) struct Partial {
 pub(super) struct Painter<'a, I, const N: usize> {
     pub(super) shader: &'a Shader<'a>,
     pub(super) ink: &'a I,
-    /// The band's first row in the picture.
-    pub(super) top: usize,
+    pub(super) band: TileRow,
 }
 
 impl<I: Ink<N>, const N: usize> Painter<'_, I, N> {
-    /// y of the centres of a row of the band.
-    fn y(&self, row: usize) -> f64 {
-        (self.top + row) as f64 + 0.5
-    }
-
-    /// Clears `rows` rows.
-    pub(super) fn clear(&self, rows: usize, memory: &mut I::Band<'_>) {
-        let width = self.shader.view.width() as usize;
-        for row in 0..rows {
-            self.ink.clear(memory, row, (0, width));
+    /// Clears the band.
+    pub(super) fn clear(&self, memory: &mut I::Band<'_>) {
+        for row in 0..self.band.rows {
+            self.ink.clear(memory, row, (0, self.band.width));
         }
     }
 
-    /// Clears what of `rows` rows is beyond the rim of a fisheye.
-    pub(super) fn clear_beyond_the_rim(&self, rows: usize, memory: &mut I::Band<'_>) {
-        let view = self.shader.view;
-        for row in 0..rows {
-            let (from, to) = view.shown_columns((self.top + row) as u32);
-            for columns in [(0, from), (to, view.width())] {
+    /// Clears what of the band is beyond the rim of a fisheye.
+    pub(super) fn clear_beyond_the_rim(&self, memory: &mut I::Band<'_>) {
+        for row in 0..self.band.rows {
+            let (from, to) = self.band.seen_columns(self.shader.view, row);
+            for columns in [(0, from), (to, self.band.width)] {
                 if columns.0 < columns.1 {
-                    let columns = (columns.0 as usize, columns.1 as usize);
                     self.ink.clear(memory, row, columns);
                 }
             }
         }
     }
 
-    /// Paints the pixels that one order covers wholly: runs of `rows` rows, by rows.
-    pub(super) fn paint_runs(
-        &self,
-        order: u32,
-        rows: usize,
-        runs: &[Run],
-        memory: &mut I::Band<'_>,
-    ) {
-        let width = self.shader.view.width() as usize;
+    /// Paints the pixels that one order covers wholly: runs, by rows.
+    pub(super) fn paint_runs(&self, order: u32, runs: &[Run], memory: &mut I::Band<'_>) {
         let mut tiles = OrderTiles {
             painter: self,
             order,
             memory,
         };
-        paint_runs(&mut tiles, width, rows, runs);
+        paint_runs(&mut tiles, self.band, runs);
     }
 
     /// Fits a patch to the pixels of a rectangle.
     fn fit(&self, order: u32, bounds: Rectangle, patch: &mut Patch<N>) -> Result<(), Misfit> {
         let (shader, ink) = (self.shader, self.ink);
         bounds.check_angle(shader.view)?;
-        let corners = bounds.centres(self.top);
+        let corners = bounds.centres(self.band);
         let angle = ink.angle();
         let mut first = None;
         let evaluate = |place, values: &mut Quantities| {
@@ -107,7 +91,7 @@ impl<I: Ink<N>, const N: usize> Painter<'_, I, N> {
             parts.clear();
             parts.extend(pixel.iter().map(|partial| partial.part));
             let (row, column) = (pixel[0].row as usize, pixel[0].column as usize);
-            let mixture = Mixture::new(self.shader, (column as f64 + 0.5, self.y(row)));
+            let mixture = Mixture::new(self.shader, self.band.centre(column, row));
             let beside = beside(row, column);
             self.ink
                 .put_mixture(memory, (row, column), parts, &mixture, beside);
@@ -132,22 +116,22 @@ impl<I: Ink<N>, const N: usize> Tiled<N> for OrderTiles<'_, '_, '_, '_, I, N> {
     }
 
     fn put_patch(&mut self, bounds: Rectangle, runs: &[Run], patch: &Patch<N>) {
-        let Painter { shader, ink, .. } = *self.painter;
+        let Painter { shader, ink, band } = *self.painter;
         for (row, (from, to)) in bounds.clip(runs) {
             let stretch = Stretch {
                 order: self.order,
                 row,
                 from,
                 to,
-                y: self.painter.y(row),
+                place: band.centre(from, row),
             };
             ink.put_stretch(self.memory, shader, stretch, patch);
         }
     }
 
     fn put_pixel(&mut self, row: usize, column: usize) {
-        let Painter { shader, ink, .. } = *self.painter;
-        let place = (column as f64 + 0.5, self.painter.y(row));
+        let Painter { shader, ink, band } = *self.painter;
+        let place = band.centre(column, row);
         ink.put_pixel(self.memory, shader, self.order, (row, column), place);
     }
 }

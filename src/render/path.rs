@@ -17,9 +17,11 @@
 //! of its parts' greatest values at the ends and of their sizes times these. Where that is negative, no ray of the
 //! wedge's curve is in the picture. A wedge of which some part is behind the camera is halved until each half is ahead
 //! or beyond a side.
+//!
+//! That is for flat pictures. Others have seams in place of a back: `round.rs` follows edges across them.
 
 use super::arc::EdgeArc;
-use super::projection::{Azimuth, Place, Projection, Quadrant};
+use super::edge_map::{Azimuth, EdgeMap, Place, Quadrant};
 use crate::isoradial::{Boundary, Sector};
 
 /// The cosine of the widest wedge that is drawn as one arc: an eighth of a right angle to either side of its middle.
@@ -89,7 +91,7 @@ impl OutlinePath {
     pub(super) fn draw(
         &mut self,
         half: &mut Self,
-        projection: &Projection<'_>,
+        map: &EdgeMap<'_>,
         tolerance: f64,
         weight: impl Fn(&Boundary) -> i32 + Sync,
         on_all_threads: bool,
@@ -99,8 +101,8 @@ impl OutlinePath {
             path.left_crossings.clear();
             path.wedges = 0;
             let mut pen = Pen {
-                projection,
-                sides: projection.sides(),
+                map,
+                sides: map.sides(),
                 tolerance,
                 path,
             };
@@ -125,7 +127,7 @@ impl OutlinePath {
 
 /// Draws a path.
 struct Pen<'a> {
-    projection: &'a Projection<'a>,
+    map: &'a EdgeMap<'a>,
     sides: [[f64; 3]; 4],
     tolerance: f64,
     path: &'a mut OutlinePath,
@@ -143,13 +145,13 @@ impl Pen<'_> {
     /// Walks half a turn about the hole, from one end of the line along â to the other: through one quarter turn of φ₁
     /// to the border, and through the other from there on.
     fn half_turn(&mut self, across: f64, weight: &impl Fn(&Boundary) -> i32) {
-        let projection = self.projection;
-        let [first, second] = projection.quadrants(across);
+        let map = self.map;
+        let [first, second] = map.quadrants(across);
         // Up to the border β falls.
-        let side = -projection.handedness(first);
+        let side = -map.handedness(first);
         let mut end_before = None;
         for (quadrant, rises) in [(first, false), (second, true)] {
-            let sectors = projection.curves.sectors(quadrant.quarter);
+            let sectors = map.curves.sectors(quadrant.quarter);
             // x falls with β in the first quarter turn.
             let by_rising_x = rises == (quadrant.quarter == 1);
             for i in 0..sectors.len() {
@@ -158,14 +160,14 @@ impl Pen<'_> {
                 } else {
                     sectors.len() - 1 - i
                 }];
-                let Some([near, far]) = azimuths(projection, quadrant.quarter, sector) else {
+                let Some([near, far]) = azimuths(map, quadrant.quarter, sector) else {
                     continue;
                 };
                 let (from, to) = if rises { (near, far) } else { (far, near) };
                 self.path.next_junction.clear();
                 for boundary in &sector.boundaries {
                     let weight = side * weight(boundary);
-                    if weight != 0 && !projection.is_at_the_camera(quadrant, boundary) {
+                    if weight != 0 && !map.is_at_the_camera(quadrant, boundary) {
                         self.track(
                             BoundaryWalk {
                                 quadrant,
@@ -208,12 +210,12 @@ impl Pen<'_> {
 
     /// Draws a line between two points, each as [`Place::seen`].
     fn line(&mut self, a: [f64; 3], b: [f64; 3], weight: i32, depth: u32) {
-        if !self.projection.is_flat {
-            let (projection, tolerance) = (self.projection, self.tolerance);
+        if !self.map.is_flat {
+            let (map, tolerance) = (self.map, self.tolerance);
             let push = &mut |arc: &EdgeArc| self.push(arc);
-            return projection.line((a, b), weight, tolerance, push, DEEPEST);
+            return map.line((a, b), weight, tolerance, push, DEEPEST);
         }
-        let (width, height) = (self.projection.width, self.projection.height);
+        let (width, height) = (self.map.width, self.map.height);
         let beyond = |[w, wx, wy]: [f64; 3]| [wx < 0.0, width * w < wx, wy < 0.0, height * w < wy];
         if beyond(a).into_iter().zip(beyond(b)).any(|(a, b)| a && b) || depth > DEEPEST {
             return;
@@ -237,10 +239,7 @@ impl Pen<'_> {
 
     /// Draws a boundary between two azimuths.
     fn track(&mut self, track: BoundaryWalk<'_>, from: Azimuth, to: Azimuth) {
-        let place = |azimuth| {
-            self.projection
-                .place(track.quadrant, track.boundary, azimuth)
-        };
+        let place = |azimuth| self.map.place(track.quadrant, track.boundary, azimuth);
         let (from, to) = (place(from), place(to));
         let end = |place: &Place, weight| End {
             kappa: place.kappa,
@@ -258,7 +257,7 @@ impl Pen<'_> {
             return;
         }
         self.path.wedges += 1;
-        let to = &self.projection.continued(*to, from);
+        let to = &self.map.continued(*to, from);
         if self.is_beyond(track, from, to) {
             return;
         }
@@ -266,18 +265,16 @@ impl Pen<'_> {
         if depth > DEEPEST || (ahead && (from.x - to.x).abs().max((from.y - to.y).abs()) <= SHORT) {
             let (from, to) = ((from.x, from.y), (to.x, to.y));
             if !ahead {
-                let projection = self.projection;
-                projection.around(from, to, track.weight, &mut |arc| self.push(arc));
+                let map = self.map;
+                map.around(from, to, track.weight, &mut |arc| self.push(arc));
             } else if let Some(arc) = EdgeArc::straight(from, to, track.weight) {
                 self.push(&arc);
             }
             return;
         }
         let azimuth = from.azimuth.between(to.azimuth);
-        let middle = self
-            .projection
-            .place(track.quadrant, track.boundary, azimuth);
-        let middle = self.projection.continued(middle, from);
+        let middle = self.map.place(track.quadrant, track.boundary, azimuth);
+        let middle = self.map.continued(middle, from);
         let arc = if ahead
             && from.azimuth.cosine_to(to.azimuth) >= WIDEST
             && is_even(track.quadrant, from, to)
@@ -298,23 +295,23 @@ impl Pen<'_> {
     /// Whether an edge may be drawn as one arc between places: ahead of the camera at similar distances, or with no seam
     /// between them.
     fn are_ahead(&self, places: &[&Place]) -> bool {
-        if self.projection.is_flat {
+        if self.map.is_flat {
             return is_level(places.iter().map(|place| place.seen[0]));
         }
         let at = |place: &Place| (place.x, place.y);
         let mut pairs = places.windows(2);
-        pairs.all(|pair| self.projection.are_near(at(pair[0]), at(pair[1])))
+        pairs.all(|pair| self.map.are_near(at(pair[0]), at(pair[1])))
     }
 
     /// Whether all of a boundary between two places is beyond one of the picture's sides: see the
     /// [module's page](self).
     fn is_beyond(&self, track: BoundaryWalk<'_>, from: &Place, to: &Place) -> bool {
         // What is beyond one side of another picture is behind another one.
-        if !self.projection.is_flat {
+        if !self.map.is_flat {
             return false;
         }
         let ([w0, x0, y0], [w1, x1, y1]) = (from.seen, to.seen);
-        let (width, height) = (self.projection.width, self.projection.height);
+        let (width, height) = (self.map.width, self.map.height);
         let beyond = [
             x0 < 0.0 && x1 < 0.0,
             width * w0 < x0 && width * w1 < x1,
@@ -324,7 +321,7 @@ impl Pen<'_> {
         if !beyond.contains(&true) {
             return false;
         }
-        let piece = &self.projection.curves.quarter(track.quadrant.quarter)[track.boundary.piece];
+        let piece = &self.map.curves.quarter(track.quadrant.quarter)[track.boundary.piece];
         let x = (from.axis.min(to.axis), from.axis.max(to.axis));
         let off_chord = 0.125 * piece.bend(track.boundary.edge, x) * (x.1 - x.0) * (x.1 - x.0);
         let kappa_off = if piece.has_pole() {
@@ -346,17 +343,17 @@ impl Pen<'_> {
 
     /// Adds an arc, if it is in the picture.
     fn push(&mut self, arc: &EdgeArc) {
-        if self.projection.is_flat {
+        if self.map.is_flat {
             self.push_part(arc);
         } else {
-            let projection = self.projection;
-            projection.in_turns(*arc, |arc| self.push_part(arc));
+            let map = self.map;
+            map.in_turns(*arc, |arc| self.push_part(arc));
         }
     }
 
     fn push_part(&mut self, arc: &EdgeArc) {
         let (rows, columns) = (arc.rows(), arc.columns());
-        let (width, height) = (self.projection.width, self.projection.height);
+        let (width, height) = (self.map.width, self.map.height);
         if rows.1 < 0.0 || rows.0 > height || columns.1 < 0.0 || columns.0 > width {
             return;
         }
@@ -372,8 +369,8 @@ impl Pen<'_> {
 }
 
 /// Returns the part of a sector that the view shows, the azimuth nearer to the border first; none if it shows nothing.
-fn azimuths(projection: &Projection<'_>, quarter: usize, sector: &Sector) -> Option<[Azimuth; 2]> {
-    let (least, greatest) = projection.reach(quarter);
+fn azimuths(map: &EdgeMap<'_>, quarter: usize, sector: &Sector) -> Option<[Azimuth; 2]> {
+    let (least, greatest) = map.reach(quarter);
     let (low, high) = (sector.x.0.max(least), sector.x.1.min(greatest));
     if low > high {
         return None;
@@ -394,7 +391,7 @@ fn azimuths(projection: &Projection<'_>, quarter: usize, sector: &Sector) -> Opt
         } else if x == farthest {
             Azimuth::FARTHEST
         } else {
-            projection.azimuth_at(quarter, x)
+            map.azimuth_at(quarter, x)
         }
     };
     let (near, far) = if quarter == 0 {
@@ -442,13 +439,13 @@ mod tests {
             // Orders as thin as an arc's error have both their edges on one side.
             let view = View::new(&scene);
             let curves = Isoradials::new(&CurveSpec::new(&scene, &view, 0.05), &Exact);
-            let projection = Projection::new(&view, &curves);
+            let map = EdgeMap::new(&view, &curves);
             let mut path = OutlinePath::default();
             let weight = |boundary: &Boundary| {
                 i32::from(boundary.above.is_some()) - i32::from(boundary.below.is_some())
             };
             let half = &mut OutlinePath::default();
-            path.draw(half, &projection, TOLERANCE, weight, false);
+            path.draw(half, &map, TOLERANCE, weight, false);
             let sees = |arc: &EdgeArc, u: f64, v: f64| {
                 let place = if arc.steep { (v, u) } else { (u, v) };
                 crate::render::centre::front(&view, &curves, place).is_some()

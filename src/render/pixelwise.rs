@@ -7,11 +7,11 @@ use rayon::prelude::*;
 
 use super::error::{RenderError, blank};
 use super::frame::Threads;
-use super::ink::{Averaging, Colours, Data, Ink, PlaneRows, amplitude};
+use super::ink::{Averaging, Colours, Data, Ink, PlaneRows, Rows, amplitude};
 use super::planes::Target;
 use super::shaded::ROWS_OF_BAND;
 use super::sky::{FrameSky, SkyShader, SkySight, StarImages};
-use super::tiles::Run;
+use super::tiles::{Rectangle, Run, TileRow};
 use crate::isoradial::Escape;
 use crate::light::{Sight, SightGeometry};
 use crate::orbit::integrate::FixedStep;
@@ -39,7 +39,10 @@ pub fn render(
         colours: None,
         sky: None,
     };
-    frame.draw(row_done, Target::Grey8(&mut pixels, view.width() as usize))?;
+    frame.draw(
+        row_done,
+        Target::Grey8(&mut pixels, view.region().width as usize),
+    )?;
     Ok(pixels)
 }
 
@@ -92,62 +95,63 @@ impl<O: Orbits> Frame<'_, O> {
             }
             Target::Planes(planes, layers) => {
                 let data = Data::new(layers, self.colours, self.scene, Averaging::Centre)?;
-                let width = self.view.width() as usize;
-                let bands = PlaneRows::bands(planes, width, ROWS_OF_BAND);
+                let bands = PlaneRows::bands(planes, self.view);
                 let stars = self.stars();
                 let bands = bands.enumerate().par_bridge();
-                bands.try_for_each(|(band, mut memory)| {
-                    let (top, light) = self.sky_band(&stars, band);
-                    for (j, light) in light.chunks_exact(width).enumerate() {
-                        self.data_row(&data, &mut memory, (top, j), light)?;
+                bands.try_for_each(|(number, mut memory)| {
+                    let band = TileRow::new(self.view, number);
+                    let light = self.sky_band(&stars, band);
+                    let (first, last) = band.shown(self.view).rows;
+                    for row in first..last {
+                        self.data_row(&data, &mut memory, (band, row), &light)?;
                         row_done();
                     }
                     data.finish_sky(&mut memory);
-                    self.clear_beyond_the_rim(&data, &mut memory, top);
+                    self.clear_beyond_the_rim(&data, &mut memory, band);
+                    memory.hand_over();
                     Ok(())
                 })
             }
         }
     }
 
-    /// Sets the layers of row j of a band that begins at row `top`.
+    /// Sets the layers of a band's row.
     fn data_row(
         &self,
         data: &Data<'_>,
-        band: &mut PlaneRows<'_>,
-        (top, j): (usize, usize),
+        memory: &mut PlaneRows<'_>,
+        (band, row): (TileRow, usize),
         light: &[[f32; 3]],
     ) -> Result<(), RenderError> {
-        let width = light.len();
-        data.clear(band, j, (0, width));
-        for i in 0..width {
-            let place = (i as u32, (top + j) as u32);
-            let pixel = j * width + i;
+        let columns = band.shown(self.view).columns;
+        data.clear(memory, row, columns);
+        for column in columns.0..columns.1 {
+            let place = ((band.left + column) as u32, (band.top + row) as u32);
+            let pixel = row * band.width + column;
             if !self.view.shows(centre(place)) {
                 continue;
             }
             if let Some(sight) = sight(self.scene, self.view, self.orbits, place)? {
-                data.set_sight(band, pixel, &sight);
+                data.set_sight(memory, pixel, &sight);
                 continue;
             }
             let is_captured = self.is_captured(place)?;
-            Data::set_hidden(band, pixel, is_captured);
-            data.put_light(band, j, i, &light[i..=i]);
+            Data::set_hidden(memory, pixel, is_captured);
+            data.put_light(memory, row, column, &light[pixel..=pixel]);
             if let Some(sky) = self.sky.filter(|_| !is_captured) {
                 let sight = self.sky_sight(&sky.shader, place)?;
-                data.put_direction(band, pixel, &sky.shader, &sight);
+                data.put_direction(memory, pixel, &sky.shader, &sight);
             }
         }
         Ok(())
     }
 
-    /// Clears what of a band, which begins at row `top`, is beyond the rim of a fisheye.
-    fn clear_beyond_the_rim(&self, data: &Data<'_>, band: &mut PlaneRows<'_>, top: usize) {
-        let (width, height) = (self.view.width(), self.view.height() as usize);
-        for j in 0..ROWS_OF_BAND.min(height - top) {
-            let (from, to) = self.view.shown_columns((top + j) as u32);
-            data.clear(band, j, (0, from as usize));
-            data.clear(band, j, (to as usize, width as usize));
+    /// Clears what of a band is beyond the rim of a fisheye.
+    fn clear_beyond_the_rim(&self, data: &Data<'_>, memory: &mut PlaneRows<'_>, band: TileRow) {
+        for row in 0..band.rows {
+            let (from, to) = band.seen_columns(self.view, row);
+            data.clear(memory, row, (0, from));
+            data.clear(memory, row, (to, band.width));
         }
     }
 
@@ -160,25 +164,22 @@ impl<O: Orbits> Frame<'_, O> {
         stars
     }
 
-    /// The first row of a band, and the light of its sky where no disk is before it.
-    fn sky_band(&self, stars: &StarImages, band: usize) -> (usize, Vec<[f32; 3]>) {
-        let (width, height) = (self.view.width(), self.view.height() as usize);
-        let top = band * ROWS_OF_BAND;
-        let rows = ROWS_OF_BAND.min(height - top);
-        let mut light = vec![[0.0; 3]; width as usize * rows];
+    /// The light of a band's sky where no disk is before it.
+    fn sky_band(&self, stars: &StarImages, band: TileRow) -> Vec<[f32; 3]> {
+        let mut light = vec![[0.0; 3]; band.width * band.rows];
         if let Some(sky) = self.sky {
             let whole = |row| Run {
                 row,
                 from: 0,
-                to: width,
+                to: band.width as u32,
             };
-            let runs: Vec<Run> = (0..rows as u32).map(whole).collect();
-            sky.paint((top, rows), &runs, &mut light);
+            let runs: Vec<Run> = (0..band.rows as u32).map(whole).collect();
+            sky.paint(band, &runs, &mut light);
             if sky.has_stars() {
-                stars.add(self.view, (band, top, rows), &mut light);
+                stars.add(self.view, band, &mut light);
             }
         }
-        (top, light)
+        light
     }
 
     /// Where the ray of a pixel's centre leaves to, by the method.
@@ -211,16 +212,18 @@ impl<O: Orbits> Frame<'_, O> {
         ),
     ) -> Result<(), RenderError> {
         let stars = self.stars();
-        let (width, height) = (self.view.width() as usize, self.view.height() as usize);
-        let needed = stride * (height - 1) + 3 * width;
-        let bands = samples[..needed].par_chunks_mut(stride * ROWS_OF_BAND);
-        bands.enumerate().try_for_each(|(band, samples)| {
-            let (top, light) = self.sky_band(&stars, band);
-            let rows = samples.chunks_mut(stride).zip(light.chunks_exact(width));
-            for (j, (row, light)) in rows.enumerate() {
-                let pixels = row[..3 * width].as_chunks_mut::<3>().0;
+        let bands = Rows::bands(samples, self.view, stride);
+        let bands = bands.enumerate().par_bridge();
+        bands.try_for_each(|(number, mut memory)| {
+            let band = TileRow::new(self.view, number);
+            let light = self.sky_band(&stars, band);
+            let Rectangle { columns, rows } = band.shown(self.view);
+            for row in rows.0..rows.1 {
+                let pixels = memory.colours(row, columns.0, columns.1);
+                let light = &light[row * band.width..][columns.0..columns.1];
                 for (i, (samples, light)) in pixels.iter_mut().zip(light).enumerate() {
-                    let place = (i as u32, (top + j) as u32);
+                    let column = band.left + columns.0 + i;
+                    let place = (column as u32, (band.top + row) as u32);
                     if !self.view.shows(centre(place)) {
                         *samples = [T::default(); 3];
                         continue;
@@ -234,6 +237,7 @@ impl<O: Orbits> Frame<'_, O> {
                 }
                 row_done();
             }
+            memory.hand_over();
             Ok(())
         })
     }
@@ -246,13 +250,14 @@ impl<O: Orbits> Frame<'_, O> {
         stride: usize,
         pixel: impl Fn((u32, u32)) -> Result<[T; N], OrbitError> + Sync,
     ) -> Result<(), RenderError> {
-        let (width, height) = (self.view.width() as usize, self.view.height() as usize);
+        let part = self.view.region();
+        let (width, height) = (part.width as usize, part.height as usize);
         let needed = stride * (height - 1) + N * width;
         let rows = samples[..needed].par_chunks_mut(stride).enumerate();
         rows.try_for_each(|(j, row)| {
             let pixels = row[..N * width].as_chunks_mut::<N>().0;
             for (i, samples) in pixels.iter_mut().enumerate() {
-                *samples = pixel((i as u32, j as u32))?;
+                *samples = pixel((part.left + i as u32, part.top + j as u32))?;
             }
             row_done();
             Ok(())

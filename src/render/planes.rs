@@ -140,7 +140,7 @@ impl FrameMemory {
     /// # Errors
     /// [`RenderError::Memory`]
     pub(super) fn target(&mut self, view: &View) -> Result<Target<'_>, RenderError> {
-        let width = view.width() as usize;
+        let width = view.region().width as usize;
         Ok(match self.form {
             Form::Grey8 => {
                 make_room(view, 1, &mut self.bytes)?;

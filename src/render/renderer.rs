@@ -14,7 +14,7 @@ use super::scene_frame::{FrameReport, SceneFrame, is_unresolved};
 use super::sky::{FrameSky, SharedSky, SkyAtRadius};
 use crate::isoradial::{CurveSpec, Isoradials, RadiusMap};
 use crate::orbit::path::SweptAngles;
-use crate::scene::{Animation, LayerSet, Light, Scene, Sky, Tone, View};
+use crate::scene::{Animation, ImageSize, LayerSet, Light, Scene, Sky, Tone, View};
 use crate::sky::SkySource;
 use crate::table::{Lookup, Table};
 
@@ -93,7 +93,7 @@ impl<A: SweptAngles> Renderer<A> {
     /// # Errors
     /// [`RenderError::Memory`]
     pub fn render(&mut self, scene: &Scene) -> Result<GrayImage, RenderError> {
-        let (width, height) = (scene.image().width, scene.image().height);
+        let ImageSize { width, height } = scene.size();
         let mut pixels = blank(&View::new(scene))?;
         self.render_into(scene, &mut pixels, width as usize)?;
         // The length is that of the picture.
@@ -105,7 +105,7 @@ impl<A: SweptAngles> Renderer<A> {
     /// # Errors
     /// [`RenderError::NoLight`] for a scene without light, [`RenderError::Memory`].
     pub fn render_rgb(&mut self, scene: &Scene) -> Result<RgbImage, RenderError> {
-        let (width, height) = (scene.image().width, scene.image().height);
+        let ImageSize { width, height } = scene.size();
         let mut pixels = Vec::new();
         make_room(&View::new(scene), 3, &mut pixels)?;
         self.render_rgb_into(scene, &mut pixels, 3 * width as usize)?;

@@ -16,7 +16,7 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use super::arc::EdgeArc;
-use super::projection::{Place, Projection};
+use super::edge_map::{EdgeMap, Place};
 use crate::scene::{self, PixelRay};
 
 /// The path around a fisheye is led this far outside of its rim, in pixels.
@@ -28,7 +28,7 @@ const PARTS: f64 = 256.0;
 /// A straight line of the sphere is cut at least into parts of this cosine.
 const LONGEST_LINE: f64 = 0.99;
 
-impl Projection<'_> {
+impl EdgeMap<'_> {
     /// A direction's parts ahead, right and up.
     #[inline]
     pub(super) fn seen_round(&self, [z, ta, tb]: [f64; 3]) -> [f64; 3] {

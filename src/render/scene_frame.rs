@@ -7,7 +7,7 @@ use super::frame::{Threads, Workspace};
 use super::ink::{Averaging, Colours, Data, Display, Ink, PlaneRows, Rows};
 use super::pixelwise;
 use super::planes::Target;
-use super::shaded::{ROWS_OF_BAND, ShadedFrame};
+use super::shaded::ShadedFrame;
 use super::shader::Shader;
 use super::sky::FrameSky;
 use crate::isoradial::{EdgeError, Isoradials, RadiusMap};
@@ -91,8 +91,6 @@ impl<A: SweptAngles> SceneFrame<'_, A> {
         } else {
             Averaging::Centre
         };
-        let width = view.width() as usize;
-        let rows = ROWS_OF_BAND;
         match target {
             Target::Grey8(samples, stride) => {
                 workspace.draw(view, curves, smooth, threads, samples, stride)?;
@@ -102,15 +100,15 @@ impl<A: SweptAngles> SceneFrame<'_, A> {
             }
             Target::Rgb8(samples, stride) => {
                 let ink = Display::<u8>::new(self.colours()?, averaging);
-                self.shade(workspace, &ink, Rows::bands(samples, stride, rows));
+                self.shade(workspace, &ink, Rows::bands(samples, view, stride));
             }
             Target::Rgb16(samples, stride) => {
                 let ink = Display::<u16>::new(self.colours()?, averaging);
-                self.shade(workspace, &ink, Rows::bands(samples, stride, rows));
+                self.shade(workspace, &ink, Rows::bands(samples, view, stride));
             }
             Target::Planes(planes, layers) => {
                 let ink = Data::new(layers, self.colours, self.scene, averaging)?;
-                self.shade(workspace, &ink, PlaneRows::bands(planes, width, rows));
+                self.shade(workspace, &ink, PlaneRows::bands(planes, view));
             }
         }
         Ok(())

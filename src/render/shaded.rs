@@ -8,14 +8,14 @@ use std::cell::{Cell, RefCell};
 
 use super::banded::{BandScratch, BandedOutline};
 use super::cells::{Cells, ONE};
+use super::edge_map::EdgeMap;
 use super::frame::{Threads, on_threads};
 use super::ink::{Ink, Part};
 use super::painter::{Painter, Partial};
 use super::path::OutlinePath;
-use super::projection::Projection;
 use super::shader::Shader;
 use super::sky::{FrameSky, StarImages};
-use super::tiles::{Run, TILE};
+use super::tiles::{Run, TILE, TileRow, tiles_of};
 use crate::isoradial::Boundary;
 use crate::scene::View;
 
@@ -93,7 +93,6 @@ impl<'a> ShadedFrame<'a> {
     ) {
         let (shader, smooth) = (self.shader, self.smooth);
         let (view, curves) = (shader.view, shader.curves);
-        let height = view.height() as usize;
         let rows = ROWS_OF_BAND;
         let count = self.threads.count();
         let is_meaningful = self.draw_outlines(rows);
@@ -108,41 +107,40 @@ impl<'a> ShadedFrame<'a> {
         let scratch = &mut workspace.scratch;
         scratch.resize_with(scratch.len().max(count), Default::default);
         on_threads(&mut scratch[..count], bands, |scratch, band, mut memory| {
-            let top = band * rows;
-            let rows = rows.min(height - top);
-            let painter = Painter { shader, ink, top };
-            let sky = sky.map(|sky| BandSky { sky, stars, band });
+            let band = TileRow::new(view, band);
+            let painter = Painter { shader, ink, band };
+            let sky = sky.map(|sky| BandSky { sky, stars });
             if smooth && is_meaningful && !outlines.is_empty() {
-                scratch.paint_smooth(outlines, rows, &painter, sky.as_ref(), (band, &mut memory));
+                scratch.paint_smooth(outlines, &painter, sky.as_ref(), &mut memory);
             } else {
                 let outlines = is_meaningful.then_some(outlines);
-                scratch.find_orders(outlines, band, rows, &painter);
-                painter.clear(rows, &mut memory);
-                scratch.paint_stars(rows, &painter, sky.as_ref(), &mut memory);
+                scratch.find_orders(outlines, &painter);
+                painter.clear(&mut memory);
+                scratch.paint_stars(&painter, sky.as_ref(), &mut memory);
                 scratch.free.clear();
-                let width = view.width() as usize;
-                for (row, orders) in scratch.orders.chunks_exact(width).enumerate() {
+                for (row, orders) in scratch.orders.chunks_exact(band.width).enumerate() {
                     runs_of(orders, NONE, row, &mut scratch.free);
                 }
-                keep_shown(view, top, &mut scratch.free);
+                keep_seen(view, band, &mut scratch.free);
                 for shown in curves.orders() {
-                    scratch.paint_order(shown.number(), rows, &painter, &mut memory);
+                    scratch.paint_order(shown.number(), &painter, &mut memory);
                 }
                 if let Some(sky) = &sky {
-                    scratch.paint_sky(rows, &painter, sky, &mut memory);
-                    ink.put_directions(&mut memory, &sky.sky.shader, (top, rows), &scratch.free);
+                    scratch.paint_sky(&painter, sky, &mut memory);
+                    ink.put_directions(&mut memory, &sky.sky.shader, band, &scratch.free);
                 }
             }
-            scratch.darken(rows, &painter, sky.as_ref());
-            ink.finish(&mut memory, shader, top);
-            painter.clear_beyond_the_rim(rows, &mut memory);
+            scratch.darken(&painter, sky.as_ref());
+            ink.finish(&mut memory, shader, band);
+            painter.clear_beyond_the_rim(&mut memory);
+            ink.hand_over(&mut memory);
         });
     }
 
     /// Draws the outline of each order. Returns whether they are more than rounding.
     fn draw_outlines(&mut self, rows: usize) -> bool {
         let (view, curves) = (self.shader.view, self.shader.curves);
-        let projection = Projection::new(view, curves);
+        let map = EdgeMap::new(view, curves);
         let orders = curves.orders();
         let outlines = &mut self.workspace.outlines;
         outlines.resize_with(orders.len().max(outlines.len()), Default::default);
@@ -154,10 +152,10 @@ impl<'a> ShadedFrame<'a> {
             let weight = |boundary: &Boundary| {
                 i32::from(boundary.above == number) - i32::from(boundary.below == number)
             };
-            outline.trace(self.half, &projection, self.smooth, weight, on_all_threads);
+            outline.trace(self.half, &map, self.smooth, weight, on_all_threads);
             is_meaningful &= outline.is_meaningful(curves);
             let sees = |place| self.shader.front_at(place) == number;
-            outline.sort(view, rows, sees);
+            outline.sort(view, tiles_of(view), rows, sees);
         }
         is_meaningful
     }
@@ -171,43 +169,42 @@ impl ShadedScratch {
     fn paint_smooth<I: Ink<N>, const N: usize>(
         &mut self,
         outlines: &Outlines,
-        rows: usize,
         painter: &Painter<'_, I, N>,
         sky: Option<&BandSky<'_>>,
-        (band, memory): (usize, &mut I::Band<'_>),
+        memory: &mut I::Band<'_>,
     ) {
+        let band = painter.band;
         self.partial.clear();
         self.covered.clear();
-        painter.clear(rows, memory);
-        self.paint_stars(rows, painter, sky, memory);
+        painter.clear(memory);
+        self.paint_stars(painter, sky, memory);
         for (order, outline) in outlines {
             self.runs.clear();
-            outline.draw(band, &mut self.band);
+            outline.draw(band.number, &mut self.band);
             let (runs, partial) = (&mut self.runs, &mut self.partial);
             self.band.rows(|cells, row, left| {
                 collect(cells, row, left, *order, runs, partial);
             });
-            keep_shown(painter.shader.view, painter.top, runs);
-            painter.paint_runs(*order, rows, &self.runs, memory);
+            keep_seen(painter.shader.view, band, runs);
+            painter.paint_runs(*order, &self.runs, memory);
             if sky.is_some() {
                 self.covered.extend_from_slice(&self.runs);
             }
         }
         if let Some(sky) = sky {
-            let width = painter.shader.view.width();
             self.covered.sort_unstable_by_key(|run| (run.row, run.from));
-            complement(&self.covered, (width, rows as u32), &mut self.free);
-            keep_shown(painter.shader.view, painter.top, &mut self.free);
-            self.paint_sky(rows, painter, sky, memory);
+            let size = (band.width as u32, band.rows as u32);
+            complement(&self.covered, size, &mut self.free);
+            keep_seen(painter.shader.view, band, &mut self.free);
+            self.paint_sky(painter, sky, memory);
         }
         let view = painter.shader.view;
         self.partial.retain(|pixel| {
-            let (from, to) = view.shown_columns(painter.top as u32 + pixel.row);
-            (from..to).contains(&pixel.column)
+            let (from, to) = band.seen_columns(view, pixel.row as usize);
+            (from..to).contains(&(pixel.column as usize))
         });
-        let width = view.width() as usize;
         let beside = |row: usize, column: usize| {
-            let light = self.light.get(row * width + column);
+            let light = self.light.get(row * band.width + column);
             let sky = sky.filter(|sky| sky.sky.shines());
             sky.and(light).copied().unwrap_or_default()
         };
@@ -216,17 +213,15 @@ impl ShadedScratch {
             && painter.ink.needs_directions()
         {
             self.find_centres(painter);
-            let place = (painter.top, rows);
             painter
                 .ink
-                .put_directions(memory, &sky.sky.shader, place, &self.centres);
+                .put_directions(memory, &sky.sky.shader, band, &self.centres);
         }
     }
 
     /// Paints the stars of a sky that nothing fills: before the disk, which hides them.
     fn paint_stars<I: Ink<N>, const N: usize>(
         &mut self,
-        rows: usize,
         painter: &Painter<'_, I, N>,
         sky: Option<&BandSky<'_>>,
         memory: &mut I::Band<'_>,
@@ -234,17 +229,17 @@ impl ShadedScratch {
         let Some(sky) = sky.filter(|sky| sky.sky.has_stars() && !sky.sky.is_filled()) else {
             return;
         };
-        let view = painter.shader.view;
-        let width = view.width() as usize;
-        if !self.is_dark || self.light.len() != width * rows {
+        let (view, band) = (painter.shader.view, painter.band);
+        let pixels = band.width * band.rows;
+        if !self.is_dark || self.light.len() != pixels {
             self.light.clear();
-            self.light.resize(width * rows, [0.0; 3]);
+            self.light.resize(pixels, [0.0; 3]);
             self.is_dark = true;
         }
-        let (light, place) = (&mut self.light, (sky.band, painter.top, rows));
-        sky.stars.add(view, place, light);
-        sky.stars.pixels(view, place, |row, column| {
-            let pixel = row * width + column;
+        let light = &mut self.light;
+        sky.stars.add(view, band, light);
+        sky.stars.pixels(band, |row, column| {
+            let pixel = row * band.width + column;
             painter
                 .ink
                 .put_light(memory, row, column, &light[pixel..=pixel]);
@@ -254,15 +249,13 @@ impl ShadedScratch {
     /// Takes the stars out of the light again: most of it is dark all the time.
     fn darken<I, const N: usize>(
         &mut self,
-        rows: usize,
         painter: &Painter<'_, I, N>,
         sky: Option<&BandSky<'_>>,
     ) {
         if let Some(sky) = sky.filter(|_| self.is_dark) {
-            let (view, place) = (painter.shader.view, (sky.band, painter.top, rows));
-            let light = &mut self.light;
-            sky.stars.pixels(view, place, |row, column| {
-                light[row * view.width() as usize + column] = [0.0; 3];
+            let (light, band) = (&mut self.light, painter.band);
+            sky.stars.pixels(band, |row, column| {
+                light[row * band.width + column] = [0.0; 3];
             });
         }
     }
@@ -270,7 +263,6 @@ impl ShadedScratch {
     /// Paints what fills the sky, and stars before it, beside what the disk covers wholly.
     fn paint_sky<I: Ink<N>, const N: usize>(
         &mut self,
-        rows: usize,
         painter: &Painter<'_, I, N>,
         sky: &BandSky<'_>,
         memory: &mut I::Band<'_>,
@@ -278,18 +270,17 @@ impl ShadedScratch {
         if !sky.sky.is_filled() {
             return;
         }
-        let (view, top) = (painter.shader.view, painter.top);
-        let width = view.width() as usize;
+        let (view, band) = (painter.shader.view, painter.band);
         self.is_dark = false;
         self.light.clear();
-        self.light.resize(width * rows, [0.0; 3]);
-        sky.sky.paint((top, rows), &self.free, &mut self.light);
+        self.light.resize(band.width * band.rows, [0.0; 3]);
+        sky.sky.paint(band, &self.free, &mut self.light);
         if sky.sky.has_stars() {
-            sky.stars.add(view, (sky.band, top, rows), &mut self.light);
+            sky.stars.add(view, band, &mut self.light);
         }
         for run in &self.free {
             let (row, from, to) = (run.row as usize, run.from as usize, run.to as usize);
-            let light = &self.light[row * width..][from..to];
+            let light = &self.light[row * band.width..][from..to];
             painter.ink.put_light(memory, row, from, light);
         }
     }
@@ -298,10 +289,9 @@ impl ShadedScratch {
     fn find_centres<I, const N: usize>(&mut self, painter: &Painter<'_, I, N>) {
         self.covered.clear();
         for pixel in &self.partial {
-            let place = (
-                f64::from(pixel.column) + 0.5,
-                (painter.top + pixel.row as usize) as f64 + 0.5,
-            );
+            let place = painter
+                .band
+                .centre(pixel.column as usize, pixel.row as usize);
             if painter.shader.front_at(place).is_some() {
                 self.covered.push(Run {
                     row: pixel.row,
@@ -318,19 +308,17 @@ impl ShadedScratch {
     fn find_orders<I, const N: usize>(
         &mut self,
         outlines: Option<&Outlines>,
-        band: usize,
-        rows: usize,
         painter: &Painter<'_, I, N>,
     ) {
-        let shader = painter.shader;
-        let width = shader.view.width() as usize;
+        let (shader, band) = (painter.shader, painter.band);
+        let width = band.width;
         let seen = |column: usize, row: usize| {
-            let place = (column as f64 + 0.5, (painter.top + row) as f64 + 0.5);
+            let place = band.centre(column, row);
             shader.front_at(place).map_or(NONE, |front| front as u8)
         };
         let orders = &mut self.orders;
         orders.clear();
-        orders.resize(width * rows, NONE);
+        orders.resize(width * band.rows, NONE);
         let Some(outlines) = outlines else {
             for (i, order) in orders.iter_mut().enumerate() {
                 *order = seen(i % width, i / width);
@@ -338,7 +326,7 @@ impl ShadedScratch {
             return;
         };
         for (order, outline) in outlines {
-            outline.draw(band, &mut self.band);
+            outline.draw(band.number, &mut self.band);
             self.band.rows(|cells, row, left| {
                 let orders = &mut orders[row * width..][..width];
                 let orders = Cell::from_mut(orders).as_slice_of_cells();
@@ -359,9 +347,9 @@ impl ShadedScratch {
             }
         }
         for (row, orders) in orders.chunks_exact_mut(width).enumerate() {
-            let (from, to) = shader.view.shown_columns((painter.top + row) as u32);
-            orders[..from as usize].fill(NONE);
-            orders[to as usize..].fill(NONE);
+            let (from, to) = painter.band.seen_columns(shader.view, row);
+            orders[..from].fill(NONE);
+            orders[to..].fill(NONE);
         }
     }
 
@@ -369,16 +357,15 @@ impl ShadedScratch {
     fn paint_order<I: Ink<N>, const N: usize>(
         &mut self,
         order: u32,
-        rows: usize,
         painter: &Painter<'_, I, N>,
         memory: &mut I::Band<'_>,
     ) {
         self.runs.clear();
-        let width = painter.shader.view.width() as usize;
+        let width = painter.band.width;
         for (row, orders) in self.orders.chunks_exact(width).enumerate() {
             runs_of(orders, order as u8, row, &mut self.runs);
         }
-        painter.paint_runs(order, rows, &self.runs, memory);
+        painter.paint_runs(order, &self.runs, memory);
     }
 }
 
@@ -386,14 +373,13 @@ impl ShadedScratch {
 struct BandSky<'a> {
     sky: &'a FrameSky<'a>,
     stars: &'a StarImages,
-    band: usize,
 }
 
-/// Keeps of the runs of a band, which begins at row `top`, what the picture shows: nothing beyond the rim of a fisheye.
-fn keep_shown(view: &View, top: usize, runs: &mut Vec<Run>) {
+/// Keeps of the runs of a band what the picture shows: nothing beyond the rim of a fisheye.
+fn keep_seen(view: &View, band: TileRow, runs: &mut Vec<Run>) {
     runs.retain_mut(|run| {
-        let (from, to) = view.shown_columns(top as u32 + run.row);
-        (run.from, run.to) = (run.from.max(from), run.to.min(to));
+        let (from, to) = band.seen_columns(view, run.row as usize);
+        (run.from, run.to) = (run.from.max(from as u32), run.to.min(to as u32));
         run.from < run.to
     });
 }

@@ -124,7 +124,7 @@ impl<'a> Shader<'a> {
             }
             None => (self.gaps)(order, ray.h, ray.meets).unwrap_or(outer),
         };
-        u.clamp(outer, inner)
+        within(u, (outer, inner))
     }
 
     /// Returns inverse radii, all at the x of `ray`, for several `κ − κ_c` on the disk.
@@ -138,7 +138,7 @@ impl<'a> Shader<'a> {
                 Some(column) => column.u(column.clamped(column.tau(h))),
                 None => (self.gaps)(order, h, meets).unwrap_or(outer),
             };
-            u.clamp(outer, inner)
+            within(u, (outer, inner))
         }
     }
 
@@ -211,4 +211,11 @@ impl<'a> Shader<'a> {
             order
         }
     }
+}
+
+/// Returns the nearest of the inverse radii between two. What is not a number becomes the first: seen from within the
+/// disk's plane, a sliver of the direct image may belong to a pixel whose own ray never meets the disk.
+#[inline]
+fn within(u: f64, (outer, inner): (f64, f64)) -> f64 {
+    u.max(outer).min(inner)
 }

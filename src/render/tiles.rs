@@ -1,13 +1,100 @@
 //! The tiles of a band: rectangles of pixels whose quantities are polynomials, and their parts where these do not do.
+//!
+//! Tiles are those of the whole picture, whichever part of it is drawn: a polynomial depends on all the pixels of its
+//! tile that it is for. So a part of a picture is drawn as the tiles that it touches, and has the whole picture's
+//! pixels.
 
 use super::patch::{Axis, Misfit, Patch};
-use crate::scene::{Projection, View};
+use crate::scene::{Projection, Region, View};
 
 /// Columns and rows of a tile: what a patch covers at most. Bands are whole rows of tiles.
 pub(super) const TILE: (usize, usize) = (128, 32);
 
 /// The widest angle of a patch in a picture that is not flat, in radians.
 const WIDEST: f64 = 0.8;
+
+/// A band: a row of tiles that the drawn part of a picture touches, cut at the picture's sides.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct TileRow {
+    /// Its number among them, from the top.
+    pub(super) number: usize,
+    /// The place of its first pixel in the picture.
+    pub(super) left: usize,
+    pub(super) top: usize,
+    /// Its columns and rows.
+    pub(super) width: usize,
+    pub(super) rows: usize,
+}
+
+impl TileRow {
+    /// The number-th row of tiles of a view.
+    pub(super) fn new(view: &View, number: usize) -> Self {
+        let tiles = tiles_of(view);
+        let above = number * TILE.1;
+        Self {
+            number,
+            left: tiles.left as usize,
+            top: tiles.top as usize + above,
+            width: tiles.width as usize,
+            rows: TILE.1.min((tiles.height as usize).saturating_sub(above)),
+        }
+    }
+
+    /// How many rows of tiles a view has.
+    pub(super) fn count(view: &View) -> usize {
+        (tiles_of(view).height as usize).div_ceil(TILE.1)
+    }
+
+    /// The pixels of it that are drawn.
+    pub(super) fn shown(self, view: &View) -> Rectangle {
+        let part = view.region();
+        let within = |first: u32, count: u32, begin: usize, length: usize| {
+            let (first, last) = (first as usize, (first + count) as usize);
+            let end = (begin + length).min(last);
+            (first.saturating_sub(begin), end - begin)
+        };
+        Rectangle {
+            columns: within(part.left, part.width, self.left, self.width),
+            rows: within(part.top, part.height, self.top, self.rows),
+        }
+    }
+
+    /// The columns of it that show something in a row of it: none beyond the rim of a fisheye.
+    pub(super) fn seen_columns(self, view: &View, row: usize) -> (usize, usize) {
+        let (from, to) = view.shown_columns((self.top + row) as u32);
+        let within = |column: u32| (column as usize).clamp(self.left, self.left + self.width);
+        (within(from) - self.left, within(to) - self.left)
+    }
+
+    /// The place of a pixel's centre, in pixels from the picture's left and its top.
+    pub(super) fn centre(self, column: usize, row: usize) -> (f64, f64) {
+        (
+            (self.left + column) as f64 + 0.5,
+            (self.top + row) as f64 + 0.5,
+        )
+    }
+}
+
+/// Returns the drawn part of a picture, widened to whole tiles as far as the picture goes.
+pub(super) fn tiles_of(view: &View) -> Region {
+    let part = view.region();
+    let widened = |first: u32, count: u32, tile: usize, all: u32| {
+        let tile = tile as u32;
+        let begin = first / tile * tile;
+        (
+            begin,
+            (first + count).next_multiple_of(tile).min(all) - begin,
+        )
+    };
+    let (left, width) = widened(part.left, part.width, TILE.0, view.width());
+    let (top, height) = widened(part.top, part.height, TILE.1, view.height());
+    Region {
+        left,
+        top,
+        width,
+        height,
+    }
+}
 
 /// Pixels of a row of a band, side by side.
 #[derive(Debug, Clone, Copy)]
@@ -51,11 +138,10 @@ pub(super) trait Tiled<const N: usize> {
     fn put_pixel(&mut self, row: usize, column: usize);
 }
 
-/// Paints runs of a band of `rows` rows, sorted by rows, in a picture that is `width` pixels wide.
+/// Paints runs of a band, sorted by rows.
 pub(super) fn paint_runs<const N: usize>(
     painter: &mut impl Tiled<N>,
-    width: usize,
-    rows: usize,
+    TileRow { width, rows, .. }: TileRow,
     runs: &[Run],
 ) {
     let mut patch = Patch::new();
@@ -124,12 +210,11 @@ impl Rectangle {
         })
     }
 
-    /// The centres of its first and its last pixel, in a band that begins at row `top` of the picture.
-    pub(super) fn centres(self, top: usize) -> ((f64, f64), (f64, f64)) {
-        let centre = |column: usize, row: usize| (column as f64 + 0.5, (top + row) as f64 + 0.5);
+    /// The centres of its first and its last pixel, in a band.
+    pub(super) fn centres(self, band: TileRow) -> ((f64, f64), (f64, f64)) {
         (
-            centre(self.columns.0, self.rows.0),
-            centre(self.columns.1 - 1, self.rows.1 - 1),
+            band.centre(self.columns.0, self.rows.0),
+            band.centre(self.columns.1 - 1, self.rows.1 - 1),
         )
     }
 

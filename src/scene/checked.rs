@@ -6,7 +6,9 @@ use super::error::SceneError;
 use super::layers::LayerSet;
 use super::sky::Sky;
 use super::validate;
-use super::values::{Camera, DEFAULT_TOLERANCE, Disk, ImageSettings, ImageSize, Light, Tone};
+use super::values::{
+    Camera, DEFAULT_TOLERANCE, Disk, ImageSettings, ImageSize, Light, Region, Tone,
+};
 use super::vector::norm;
 
 /// A checked scene: nothing that takes one needs to check it again.
@@ -109,14 +111,29 @@ impl Scene {
         self
     }
 
-    /// The same scene as a picture of another size; the vertical field of view stays.
+    /// The same scene as a picture of another size; the vertical field of view stays, and so does the part that is
+    /// drawn.
     ///
     /// # Errors
-    /// [`SceneError::Value`] for a size that is not allowed: an equirectangular picture is twice as wide as high.
+    /// [`SceneError::Value`] for a size that is not allowed (an equirectangular picture is twice as wide as high), and for one that does not have the part that is drawn.
     pub fn with_size(mut self, width: u32, height: u32) -> Result<Self, SceneError> {
         let size = validate::image_size(i64::from(width), i64::from(height))?;
         validate::shape(self.camera.projection, size)?;
         self.settings.size = size;
+        let crop = self.settings.crop;
+        self.with_crop(crop)
+    }
+
+    /// The same scene of which only a part of the picture is drawn, or all of it (`None`).
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for a part without pixels, and for one that reaches beyond the picture.
+    pub fn with_crop(mut self, crop: Option<Region>) -> Result<Self, SceneError> {
+        if let Some(part) = crop {
+            let numbers = [part.left, part.top, part.width, part.height].map(i64::from);
+            validate::crop(numbers, self.settings.size)?;
+        }
+        self.settings.crop = crop;
         Ok(self)
     }
 
@@ -257,9 +274,24 @@ impl Scene {
         self.settings.layers
     }
 
-    /// The picture's size.
+    /// The whole picture's size.
     pub fn image(&self) -> ImageSize {
         self.settings.size
+    }
+
+    /// The part of the picture that is drawn, if it is not all.
+    pub fn crop(&self) -> Option<Region> {
+        self.settings.crop
+    }
+
+    /// The part of the picture that is drawn: [`Self::crop`], or all of it.
+    pub fn region(&self) -> Region {
+        self.settings.region()
+    }
+
+    /// The size of what is drawn: of [`Self::region`].
+    pub fn size(&self) -> ImageSize {
+        self.region().size()
     }
 
     /// Whether edges are smooth: a pixel is then the share of its square that the disk covers, else what its centre

@@ -83,6 +83,8 @@ pub(super) struct ImageTable {
     pub(super) bits: i64,
     #[serde(default, deserialize_with = "layers")]
     pub(super) layers: LayerSet,
+    #[serde(default, deserialize_with = "crop")]
+    pub(super) crop: Option<[i64; 4]>,
 }
 
 impl Default for ImageTable {
@@ -96,6 +98,7 @@ impl Default for ImageTable {
             tone: Tone::default(),
             bits: one_byte(),
             layers: LayerSet::default(),
+            crop: None,
         }
     }
 }
@@ -293,6 +296,17 @@ fn light<'de, D: Deserializer<'de>>(source: D) -> Result<Option<Light>, D::Error
     .map_err(D::Error::custom)
 }
 
+/// Reads a part of the picture. An array type would ignore a fifth number.
+fn crop<'de, D: Deserializer<'de>>(source: D) -> Result<Option<[i64; 4]>, D::Error> {
+    let numbers = Vec::<i64>::deserialize(source)?;
+    <[i64; 4]>::try_from(numbers).map(Some).map_err(|numbers| {
+        D::Error::custom(format_args!(
+            "a part of the picture is four whole numbers, [left, top, width, height]; this one has {}",
+            numbers.len()
+        ))
+    })
+}
+
 /// Reads the names of layers.
 fn layers<'de, D: Deserializer<'de>>(source: D) -> Result<LayerSet, D::Error> {
     LayerSet::from_names(Vec::<String>::deserialize(source)?).map_err(D::Error::custom)
@@ -322,9 +336,12 @@ impl SceneFile {
         self.sky.as_deref().map_or(Ok(()), validate::sky)?;
         let settings =
             validate::image(image.width, image.height, image.antialias, image.tolerance)?;
+        validate::shape(self.camera.projection, settings.size)?;
         validate::exposure("image.exposure", image.exposure)?;
         validate::layers(image.layers, light, self.sky.is_some())?;
+        let crop = image.crop.map(|part| validate::crop(part, settings.size));
         Ok(ImageSettings {
+            crop: crop.transpose()?,
             exposure: image.exposure,
             tone: image.tone,
             bits: validate::bits(image.bits)?,

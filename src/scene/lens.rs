@@ -211,3 +211,111 @@ fn sine_share(square: f64, sine: f64) -> f64 {
         sine / square.sqrt()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: ImageSize = ImageSize {
+        width: 200,
+        height: 100,
+    };
+
+    fn lenses() -> impl Iterator<Item = Lens> {
+        [
+            (Projection::Perspective, 120.0),
+            (Projection::Fisheye, 1e-3),
+            (Projection::Fisheye, 180.0),
+            (Projection::Fisheye, 360.0),
+            (Projection::Equirectangular, 180.0),
+        ]
+        .into_iter()
+        .map(|(projection, fov)| {
+            let camera = Camera {
+                projection,
+                ..Camera::at([20.0, 0.0, 0.0], fov)
+            };
+            Lens::new(&camera, SIZE)
+        })
+    }
+
+    /// Points of a picture: its centre, places about it, and places all over it.
+    fn points(lens: &Lens) -> impl Iterator<Item = (f64, f64)> {
+        let places =
+            (0..21).flat_map(|i| (0..11).map(move |j| (10.0 * f64::from(i), 10.0 * f64::from(j))));
+        let near = [(100.0, 50.0), (100.0, 50.0 + 1e-9), (100.02, 49.97)];
+        let height = f64::from(SIZE.height);
+        places.chain(near).filter_map(move |(column, row)| {
+            let (x, y) = (2.0 * column - 200.0, 2.0 * row - 100.0);
+            let is_seen =
+                lens.projection() != Projection::Fisheye || x * x + y * y < height * height;
+            is_seen.then(|| (lens.x_at(column), lens.y_at(row)))
+        })
+    }
+
+    #[test]
+    fn places_are_those_of_their_directions() {
+        for lens in lenses() {
+            let scale = lens.y_at(0.0);
+            for (x, y) in points(&lens) {
+                let direction = lens.direction(x, y).map(|part| 3.0 * part);
+                let (found_x, found_y) = lens.point(direction).unwrap();
+                // A pole has any longitude.
+                let is_pole = lens.projection() == Projection::Equirectangular && y.abs() > 1.57;
+                let apart = if is_pole { 0.0 } else { found_x - x };
+                let turns = (apart / (2.0 * PI)).round() * 2.0 * PI;
+                let off = (apart - turns).abs().max((found_y - y).abs());
+                assert!(off < 1e-13 * scale, "{lens:?} {x} {y}: {off:e}");
+            }
+        }
+    }
+
+    /// Changes of directions, of points and of solid angles against differences.
+    #[test]
+    fn changes_are_differences() {
+        for lens in lenses() {
+            let step = 1e-4 * lens.y_at(0.0).min(1.0);
+            for (x, y) in points(&lens) {
+                let [with_x, with_y] = lens.changes(x, y);
+                let difference = |a: Direction, b: Direction| -> Direction {
+                    core::array::from_fn(|i| (a[i] - b[i]) / (2.0 * step))
+                };
+                let of_x = difference(lens.direction(x + step, y), lens.direction(x - step, y));
+                let of_y = difference(lens.direction(x, y + step), lens.direction(x, y - step));
+                for (found, known) in [(with_x, of_x), (with_y, of_y)] {
+                    for (found, known) in found.into_iter().zip(known) {
+                        assert!(
+                            (found - known).abs() < 1e-7,
+                            "{lens:?} {x} {y}: {found} {known}"
+                        );
+                    }
+                }
+                let [a, b] = [with_x, with_y];
+                let normal = [
+                    a[1] * b[2] - a[2] * b[1],
+                    a[2] * b[0] - a[0] * b[2],
+                    a[0] * b[1] - a[1] * b[0],
+                ];
+                let direction = lens.direction(x, y);
+                let length = direction.iter().map(|part| part * part).sum::<f64>().sqrt();
+                let volume: f64 = (0..3).map(|i| normal[i] * direction[i]).sum();
+                let known = volume / (length * length * length);
+                assert!(
+                    (lens.solid_angle(x, y) - known).abs() < 1e-9,
+                    "{lens:?} {x} {y}"
+                );
+
+                // A step of the point follows the step of its direction; about a pole there is none.
+                if lens.solid_angle(x, y) < 1e-3 {
+                    continue;
+                }
+                let (of_x, of_y) = (
+                    lens.point_change(direction, with_x),
+                    lens.point_change(direction, with_y),
+                );
+                let off = (of_x.0 - 1.0).abs() + of_x.1.abs() + of_y.0.abs() + (of_y.1 - 1.0).abs();
+                assert!(off < 1e-9, "{lens:?} {x} {y}: {of_x:?} {of_y:?}");
+            }
+        }
+    }
+}

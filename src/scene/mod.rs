@@ -12,6 +12,7 @@
 //! focus    = [0.0, 0.0, 0.0]         # default: the hole
 //! up       = [0.0, 0.0, 1.0]         # default: +z; beside angles, where the inclination falls
 //! roll     = 0.0                     # default; degrees; positive turns the picture's content clockwise
+//! projection = "perspective"         # default; "fisheye" or "equirectangular": see [`Projection`]
 //! fov      = 30.0                    # default; vertical field of view, degrees, 0 < fov < 180
 //! # or, in its place: fov_horizontal = 51.0
 //!
@@ -44,6 +45,7 @@
 //! tone = "neutral"                   # default; highlights roll off towards white; "none": they are clipped
 //! bits = 8                           # default; or 16, of a PNG picture's samples
 //! layers = ["radius", "redshift"]    # default: none; the data in .exr and .npz files
+//! crop = [640, 360, 320, 180]        # default: all; the part that is drawn: left, top, width, height, in pixels
 //! ```
 //!
 //! A camera at radius r, inclination i and azimuth a is at `r (sin i cos a, sin i sin a, cos i)`. A roll turns it about
@@ -95,5 +97,5 @@ pub use validate::{
     MAX_STAR_COUNT, MAX_STAR_RADIUS, MAX_TEMPERATURE, MAX_TOLERANCE, MIN_GRID, MIN_TEMPERATURE,
     NARROWEST_FOV, WIDEST_DISK,
 };
-pub use values::{Camera, DEFAULT_TOLERANCE, Disk, ImageSize, Light, Tone};
+pub use values::{Camera, DEFAULT_TOLERANCE, Disk, ImageSize, Light, Region, Tone};
 pub use view::{PixelRay, View};

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::error::SceneError;
 use super::file::SPHERE;
 use super::projection::Projection;
-use super::values::{Camera, Disk, ImageSettings, ImageSize};
+use super::values::{Camera, Disk, ImageSettings, ImageSize, Region};
 use super::vector::{cosine, direction, norm};
 
 mod light;
@@ -139,6 +139,42 @@ pub(super) fn image_size(width: i64, height: i64) -> Result<ImageSize, SceneErro
     Ok(ImageSize {
         width: side("image.width", width)?,
         height: side("image.height", height)?,
+    })
+}
+
+/// Checks a part of a picture: its left, its top, its width and its height.
+///
+/// # Errors
+/// [`SceneError::Value`] for a part without pixels, and for one that reaches beyond the picture.
+pub(super) fn crop(
+    part: [i64; 4],
+    ImageSize { width, height }: ImageSize,
+) -> Result<Region, SceneError> {
+    let refused = |reason: &str| SceneError::value("image.crop", part, reason);
+    let [left, top, columns, rows] = part;
+    if columns < 1 || rows < 1 {
+        return Err(refused(
+            "a part of a picture has at least one column and one row; write [left, top, width, height]",
+        ));
+    }
+    let side = |first: i64, count: i64, all: u32| {
+        let end = first
+            .checked_add(count)
+            .filter(|&end| first >= 0 && end <= i64::from(all));
+        let part = (u32::try_from(first), u32::try_from(count));
+        match (end, part) {
+            (Some(_), (Ok(first), Ok(count))) => Ok((first, count)),
+            _ => Err(refused(&format!(
+                "this part, [left, top, width, height], reaches beyond the picture of {width} × {height} pixels"
+            ))),
+        }
+    };
+    let ((left, width), (top, height)) = (side(left, columns, width)?, side(top, rows, height)?);
+    Ok(Region {
+        left,
+        top,
+        width,
+        height,
     })
 }
 
@@ -487,6 +523,44 @@ mod tests {
             }
         }
         assert!(changed(&[("width", "1000000"), ("height", "1000000")]).is_ok());
+    }
+
+    #[test]
+    fn parts_of_pictures() {
+        let cropped = |crop: &str| {
+            let toml = format!("{GOOD}crop = {crop}\n");
+            Scene::from_toml(&toml).map_err(|error| error.to_string())
+        };
+        for (crop, words) in [
+            ("[60, 0, 5, 5]", "beyond the picture of 64 × 36 pixels"),
+            ("[0, 30, 5, 7]", "beyond the picture"),
+            ("[-1, 0, 5, 5]", "beyond the picture"),
+            ("[1, 0, 9223372036854775807, 5]", "beyond the picture"),
+            ("[0, 0, 0, 5]", "at least one column and one row"),
+            ("[0, 0, 5, -5]", "at least one column and one row"),
+        ] {
+            let message = cropped(crop).unwrap_err();
+            assert!(
+                message.starts_with(&format!("image.crop = {crop}: ")) && message.contains(words),
+                "{message}"
+            );
+        }
+        let message = cropped("[0, 0, 5]").unwrap_err();
+        assert!(
+            message.contains("four whole numbers, [left, top, width, height]; this one has 3"),
+            "{message}"
+        );
+        let message = cropped("[0, 0, 5, 1.5]").unwrap_err();
+        assert!(message.contains("expected a whole number"), "{message}");
+        let scene = cropped("[60, 0, 4, 36]").unwrap();
+        assert_eq!(
+            (scene.size().width, scene.size().height, scene.image().width),
+            (4, 36, 64)
+        );
+        assert!(scene.to_toml().ends_with("\ncrop = [60, 0, 4, 36]\n"));
+        assert_eq!(Scene::from_toml(&scene.to_toml()).unwrap(), scene);
+        // A part that the new size does not have is refused.
+        assert!(scene.clone().with_size(63, 36).is_err() && scene.with_size(65, 36).is_ok());
     }
 
     #[test]

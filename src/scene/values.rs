@@ -118,6 +118,39 @@ pub struct ImageSize {
     pub height: u32,
 }
 
+/// A part of a picture, in whole pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Region {
+    /// The columns to its left.
+    pub left: u32,
+    /// The rows above it.
+    pub top: u32,
+    /// Its pixels in a row.
+    pub width: u32,
+    /// Its rows.
+    pub height: u32,
+}
+
+impl Region {
+    /// The whole of a picture.
+    pub fn whole(ImageSize { width, height }: ImageSize) -> Self {
+        Self {
+            left: 0,
+            top: 0,
+            width,
+            height,
+        }
+    }
+
+    /// Its size.
+    pub fn size(self) -> ImageSize {
+        ImageSize {
+            width: self.width,
+            height: self.height,
+        }
+    }
+}
+
 /// The light of the disk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Light {
@@ -145,6 +178,8 @@ pub enum Tone {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ImageSettings {
     pub(super) size: ImageSize,
+    /// The part that is drawn; all of it if there is none.
+    pub(super) crop: Option<Region>,
     /// Whether edges are smooth.
     pub(super) antialias: bool,
     /// The largest error of an edge, in pixels.
@@ -163,6 +198,7 @@ impl ImageSettings {
     pub(super) fn new(size: ImageSize, antialias: bool, tolerance: f64) -> Self {
         Self {
             size,
+            crop: None,
             antialias,
             tolerance,
             exposure: 0.0,
@@ -170,5 +206,10 @@ impl ImageSettings {
             bits: 8,
             layers: LayerSet::default(),
         }
+    }
+
+    /// The part of the picture that is drawn.
+    pub(super) fn region(&self) -> Region {
+        self.crop.unwrap_or(Region::whole(self.size))
     }
 }

@@ -27,6 +27,7 @@ use glam::DVec3;
 use super::checked::Scene;
 use super::lens::{Direction, Lens};
 use super::projection::Projection;
+use super::values::Region;
 use super::vector::{cosine, direction, norm, scaled, unit_cross};
 
 /// n and p̂ are parallel where `|n × p̂|` is at most this: the rest is the rounding of the cross product and of the
@@ -77,6 +78,8 @@ pub struct View {
     /// The factors of a direction's parts ahead, right and up in z, `t_a` and `t_b`.
     parts: [Direction; 3],
     lens: Lens,
+    /// The part of the picture that is drawn.
+    region: Region,
 }
 
 impl View {
@@ -141,6 +144,7 @@ impl View {
             level: b,
             parts: [[-f.dot(p), -right_p, -true_up_p], across(a), across(b)],
             lens: Lens::new(camera, image),
+            region: scene.region(),
         }
     }
 
@@ -207,14 +211,20 @@ impl View {
         &self.lens
     }
 
-    /// The picture's width, in pixels.
+    /// The whole picture's width, in pixels.
     pub fn width(&self) -> u32 {
         self.lens.size().0
     }
 
-    /// The picture's height, in pixels.
+    /// The whole picture's height, in pixels.
     pub fn height(&self) -> u32 {
         self.lens.size().1
+    }
+
+    /// The part of the picture that is drawn. Places in the picture are counted from the whole picture's left and top
+    /// all the same.
+    pub fn region(&self) -> Region {
+        self.region
     }
 
     /// The side of a pixel in X and Y.

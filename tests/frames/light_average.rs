@@ -333,3 +333,25 @@ fn thin_rings_have_the_light_of_samples() {
     });
     assert!(within.iter().all(|is_within| *is_within));
 }
+
+/// Guards against a mean over a pixel in which the direct image is at the camera itself: seen from within the disk's
+/// plane it is all of a quarter turn.
+#[test]
+fn from_within_the_disks_plane_partly_covered_pixels_have_light() {
+    let scene = Scene::from_toml(
+        "[camera]\nposition = [194.8559017795181, -286.8514912411658, 0.0]\n\
+         focus = [3.7471370285745422, 2.4733563504943194, 4.601416000952595]\n\
+         up = [0.7007695744552487, 0.2, 1.0]\nfov = 2.018172187793837\n\
+         [disk]\ninner = 3.0\nouter = 3.965706792551636\n[disk.light]\nmodel = \"bolometric\"\n\
+         [image]\nwidth = 206\nheight = 89\n",
+    )
+    .unwrap();
+    let everywhere = ((0.0, 0.0), f64::INFINITY);
+    assert!(against_samples(
+        "in the plane",
+        &scene,
+        (4096, 1),
+        everywhere,
+        (0.02, 1e-3, 1e-3)
+    ));
+}

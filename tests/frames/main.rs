@@ -26,6 +26,7 @@ mod batches;
 mod coverage;
 mod coverage_frames;
 mod coverage_rings;
+mod crops;
 mod extreme_cameras;
 mod figure;
 mod grazing;

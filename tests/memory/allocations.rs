@@ -13,7 +13,7 @@ use darkness::orbit::exact::Exact;
 use darkness::render::batch::{self, Curved, DrawnFrame, Frames, Sharing};
 use darkness::render::frame::{Threads, Workspace};
 use darkness::render::{Form, FrameMemory};
-use darkness::scene::{Animation, Layer, Scene, Sky, SkyFile, StarSource, Stars, View};
+use darkness::scene::{Animation, Layer, Region, Scene, Sky, SkyFile, StarSource, Stars, View};
 use darkness::sky::{Panorama, SkySource, StarField};
 
 use crate::tables;
@@ -22,10 +22,14 @@ struct Counting;
 
 static COUNT: AtomicU64 = AtomicU64::new(0);
 
+/// All bytes that were ever allocated.
+static BYTES: AtomicU64 = AtomicU64::new(0);
+
 // SAFETY: every call is passed on to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         COUNT.fetch_add(1, Ordering::Relaxed);
+        BYTES.fetch_add(layout.size() as u64, Ordering::Relaxed);
         // SAFETY: the caller keeps the same contract.
         unsafe { System.alloc(layout) }
     }
@@ -44,6 +48,39 @@ fn count(work: impl FnOnce()) -> u64 {
     let before = COUNT.load(Ordering::Relaxed);
     work();
     COUNT.load(Ordering::Relaxed) - before
+}
+
+/// Crops of a picture of four thousand million pixels, as masks, colours and layers.
+pub(crate) fn a_crop_takes_no_memory_for_the_whole() {
+    let scene = Scene::builtin("lit").unwrap();
+    let scene = scene.with_size(65_536, 65_536).unwrap();
+    let crop = |left, top| Region {
+        left,
+        top,
+        width: 64,
+        height: 64,
+    };
+    let layers = [Layer::Colour, Layer::Redshift].into_iter().collect();
+    for form in [Form::Grey8, Form::Grey16, Form::Rgb8, Form::Layers(layers)] {
+        for smooth in [false, true] {
+            let mut renderer = Renderer::new(tables::table("standard"));
+            let mut memory = FrameMemory::new(form);
+            let mut draw = |left, top| {
+                let scene = scene.clone().with_antialias(smooth);
+                let scene = scene.with_crop(Some(crop(left, top))).unwrap();
+                let before = BYTES.load(Ordering::Relaxed);
+                let report = renderer.draw(&scene, &mut memory).unwrap();
+                assert!(!report.ray_by_ray);
+                BYTES.load(Ordering::Relaxed) - before
+            };
+            // With the curves, their map and the colours, and without.
+            let (first, next) = (draw(32_736, 30_000), draw(50_000, 32_000));
+            assert!(
+                first < 64 << 20 && next < 8 << 20,
+                "{first}, {next}: {form:?}"
+            );
+        }
+    }
 }
 
 pub(crate) fn frames_take_no_memory_once_warm() {

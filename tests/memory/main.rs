@@ -11,6 +11,7 @@ mod resident_memory;
 fn a_frame_takes_little_memory_beside_its_pixels_and_none_once_warm() {
     #[cfg(target_os = "linux")]
     resident_memory::a_frame_takes_little_more_than_its_bytes();
+    allocations::a_crop_takes_no_memory_for_the_whole();
     allocations::frames_take_no_memory_once_warm();
     allocations::lit_frames_take_no_memory_once_warm();
     allocations::skies_take_no_memory_once_warm();

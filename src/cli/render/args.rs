@@ -82,6 +82,10 @@ pub(in crate::cli) struct RenderArgs {
     /// The picture's size in pixels, such as 1920x1080 [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(super) size: Option<ImageSize>,
+    /// Draw only a part of the picture, in whole pixels from its left and its top: the bytes of that part of the whole
+    /// picture, at the cost of that part [default: the scene's, or all]
+    #[arg(long, value_name = "LEFT,TOP,WIDTH,HEIGHT", value_parser = crop, allow_hyphen_values = true)]
+    pub(super) crop: Option<Crop>,
     /// The largest error of an edge, in pixels, above 0 and at most 1 [default: the scene's]
     #[arg(long, value_name = "PIXELS", allow_negative_numbers = true)]
     pub(super) tolerance: Option<f64>,
@@ -119,6 +123,18 @@ pub(in crate::cli) struct RenderArgs {
     pub(super) method: MethodArgs,
     #[command(flatten)]
     pub(super) threads: ThreadArgs,
+}
+
+/// The numbers of `--crop`, which are checked with the scene.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Crop(pub(super) [i64; 4]);
+
+fn crop(text: &str) -> Result<Crop, String> {
+    let numbers: Result<Vec<i64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    let numbers = numbers.ok().and_then(|numbers| numbers.try_into().ok());
+    numbers.map(Crop).ok_or_else(|| {
+        "a part of the picture is four whole numbers, LEFT,TOP,WIDTH,HEIGHT: 640,360,320,180".into()
+    })
 }
 
 fn bits(text: &str) -> Result<u8, String> {

@@ -15,7 +15,7 @@ use super::{form, memory, options, sky};
 use crate::quotation::beginning;
 use crate::render::Form;
 use crate::render::needs::{Candidate, Needs};
-use crate::scene::{Animation, ImageSize, Scene, Sky, StarSource};
+use crate::scene::{Animation, ImageSize, Projection, Scene, Sky, StarSource};
 use crate::sky::SkySource;
 
 /// The most frames that are looked at.
@@ -64,7 +64,7 @@ pub(super) fn run(
     ));
     text.push_str(&figures.lines(&first, form));
     if let Some(sky) = sky {
-        let frame = memory::of_frame(first.image(), form);
+        let frame = memory::of_frame(first.size(), form);
         let source = sky::read(sky, frame, args.max_memory, report)?;
         text.push_str(&sky_lines(sky, &source));
     }
@@ -90,7 +90,17 @@ fn looked_at(frames: &FrameRange) -> Vec<i64> {
 /// What the picture is to be.
 fn picture(scene: &Scene) -> String {
     let ImageSize { width, height } = scene.image();
-    let size = format!("{width} × {height}");
+    let mut size = format!("{width} × {height}");
+    if let Some(part) = scene.crop() {
+        size = format!(
+            "{} × {} from column {} and row {} of {size}",
+            part.width, part.height, part.left, part.top
+        );
+    }
+    let projection = scene.camera().projection;
+    if projection != Projection::Perspective {
+        size = format!("{size}, {}", projection.name());
+    }
     if scene.disk().is_none() {
         return size;
     }

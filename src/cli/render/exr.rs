@@ -1,6 +1,7 @@
 //! Frames as OpenEXR files.
 //!
-//! One part of 32-bit floats, compressed by ZIP in blocks of 16 rows. Colour is in the channels `R`, `G`, `B` and, with
+//! One part of 32-bit floats, compressed by ZIP in blocks of 16 rows. Of a cropped picture the data window is the crop,
+//! and the display window the whole picture. Colour is in the channels `R`, `G`, `B` and, with
 //! the alpha layer, `A`: linear and premultiplied, with the chromaticities of Rec. 709. The direction of the sky is in
 //! `sky.x`, `sky.y` and `sky.z`, its place in a panorama in `sky.u` and `sky.v`. Each other layer is a channel
 //! `disk.NAME`. Text attributes hold the program's version (`software`) and the [`FrameOrigin`]: `darkness:scene`,
@@ -16,7 +17,8 @@ use exr::block::writer::ChunksWriter;
 use exr::math::Vec2;
 use exr::meta::BlockDescription;
 use exr::meta::attribute::{
-    AttributeValue, ChannelDescription, Chromaticities, Compression, LineOrder, SampleType, Text,
+    AttributeValue, ChannelDescription, Chromaticities, Compression, IntegerBounds, LineOrder,
+    SampleType, Text,
 };
 use exr::meta::header::Header;
 use flate2::write::ZlibEncoder;
@@ -24,7 +26,7 @@ use flate2::write::ZlibEncoder;
 use super::memory;
 use super::origin::{ANY_VERSION, FrameOrigin, HEAD, SOFTWARE};
 use crate::render::Plane;
-use crate::scene::{ImageSize, Layer};
+use crate::scene::{ImageSize, Layer, Region};
 
 /// The attribute with the file's checksum.
 const CHECKSUM: &str = "darkness:crc32";
@@ -55,16 +57,16 @@ struct Channel<'a> {
 /// There is not enough memory to encode the frame.
 pub(super) fn encode(
     planes: &[Plane],
-    size: ImageSize,
+    (whole, part): (ImageSize, Region),
     origin: &FrameOrigin,
 ) -> io::Result<Vec<u8>> {
-    let (width, height) = (size.width as usize, size.height as usize);
+    let (width, height) = (part.width as usize, part.height as usize);
     let mut channels: Vec<Channel<'_>> = planes.iter().flat_map(channels_of).collect();
     // The format demands this order.
     channels.sort_by(|a, b| a.name.cmp(&b.name));
     memory::grant(width * height * channels.len() * size_of::<f32>())?;
 
-    let header = header(&channels, (width, height), origin);
+    let header = header(&channels, (whole, part), origin);
     let mut file = Cursor::new(Vec::new());
     block::write(&mut file, once(header).collect(), true, |_, writer| {
         for (place, top) in (0..height).step_by(ROWS).enumerate() {
@@ -78,7 +80,7 @@ pub(super) fn encode(
                 }
             }
             let block = CompressedScanLineBlock {
-                y_coordinate: top as i32,
+                y_coordinate: part.top as i32 + top as i32,
                 compressed_pixels_le: zipped(values)?,
             };
             let chunk = Chunk {
@@ -153,11 +155,16 @@ fn channels_of(plane: &Plane) -> Vec<Channel<'_>> {
     names.into_iter().enumerate().map(channel).collect()
 }
 
-/// The header of a file with these channels.
-fn header(channels: &[Channel<'_>], size: (usize, usize), origin: &FrameOrigin) -> Header {
+/// The header of a file with these channels, of a part of a picture.
+fn header(
+    channels: &[Channel<'_>],
+    (whole, part): (ImageSize, Region),
+    origin: &FrameOrigin,
+) -> Header {
     let described = channels
         .iter()
         .map(|channel| ChannelDescription::named(channel.name.as_str(), SampleType::F32));
+    let size = (part.width as usize, part.height as usize);
     let header = Header::new(Text::default(), size, described.collect());
     let mut header = header.with_encoding(
         Compression::ZIP16,
@@ -165,6 +172,12 @@ fn header(channels: &[Channel<'_>], size: (usize, usize), origin: &FrameOrigin) 
         LineOrder::Increasing,
     );
     header.own_attributes.layer_name = None;
+    // The data window is the part, the display window the whole picture.
+    header.own_attributes.layer_position = Vec2(part.left as i32, part.top as i32);
+    header.shared_attributes.display_window = IntegerBounds {
+        position: Vec2(0, 0),
+        size: Vec2(whole.width as usize, whole.height as usize),
+    };
     header.shared_attributes.chromaticities = Some(Chromaticities {
         red: Vec2(0.64, 0.33),
         green: Vec2(0.30, 0.60),
@@ -266,6 +279,10 @@ mod tests {
         height: 37,
     };
 
+    fn whole() -> (ImageSize, Region) {
+        (SIZE, Region::whole(SIZE))
+    }
+
     /// Layers with numbers that tell where they belong.
     fn planes() -> Vec<Plane> {
         let layers = [
@@ -291,8 +308,8 @@ mod tests {
     #[test]
     fn channels_and_attributes_come_back() {
         let planes = planes();
-        let file = encode(&planes, SIZE, &origin(12)).unwrap();
-        assert_eq!(file, encode(&planes, SIZE, &origin(12)).unwrap());
+        let file = encode(&planes, whole(), &origin(12)).unwrap();
+        assert_eq!(file, encode(&planes, whole(), &origin(12)).unwrap());
         let image = read()
             .no_deep_data()
             .largest_resolution_level()
@@ -351,7 +368,7 @@ mod tests {
 
     #[test]
     fn a_file_of_another_origin_or_with_any_damage_is_not_taken_for_the_same() {
-        let file = encode(&planes(), SIZE, &origin(12)).unwrap();
+        let file = encode(&planes(), whole(), &origin(12)).unwrap();
         assert_no_other_is_taken(&file, &origin(12), made);
         assert_only_ours_is_taken(&file, is_ours);
     }

@@ -167,7 +167,7 @@ impl Figures {
                 format!("{number} and up are left out, at most {thickness} pixels thick{share}"),
             );
         }
-        let ImageSize { width, height } = scene.image();
+        let ImageSize { width, height } = scene.size();
         let pixels = u64::from(width) * u64::from(height) * form.bytes() as u64;
         if has_disk {
             let (bytes, nodes) = &self.curves;

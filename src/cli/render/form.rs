@@ -63,14 +63,17 @@ pub(super) fn of(animation: &Animation, format: Format) -> anyhow::Result<Form> 
              [sky]",
         ));
     }
-    let ImageSize { width, height } = animation.image();
+    let ImageSize { width, height } = animation.size();
     if format.shares_chroma() && (width % 2 == 1 || height % 2 == 1) {
-        let even = |side: u32| side + side % 2;
+        let (even_width, even_height) = (width + width % 2, height + height % 2);
+        let advice = if animation.region().size() == animation.image() {
+            format!("choose --size {even_width}x{even_height}")
+        } else {
+            format!("choose a --crop of {even_width} by {even_height} pixels")
+        };
         return Err(misuse(format!(
             "{width} × {height}: in .{name} films 2 × 2 pixels share one sample of colour (4:2:0), so width and height \
-             must be even; choose --size {}x{}, or --format raw",
-            even(width),
-            even(height)
+             must be even; {advice}, or --format raw"
         )));
     }
     Ok(match (in_colour, bits) {

@@ -28,8 +28,8 @@ pub(super) fn check(allowed: ByteSize, size: ImageSize, form: Form) -> anyhow::R
         return Ok(());
     }
     Err(misuse(format!(
-        "{} × {} pixels take about {} of memory, and {allowed} are allowed; choose a smaller picture with --size, or \
-         allow more with --max-memory",
+        "{} × {} pixels take about {} of memory, and {allowed} are allowed; choose a smaller picture with --size, a \
+         part of it with --crop, or allow more with --max-memory",
         size.width,
         size.height,
         ByteSize(needed)

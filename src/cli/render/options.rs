@@ -4,7 +4,7 @@ use super::super::frame_range::FrameRange;
 use super::super::method::{Checked, Method};
 use super::super::misuse::misuse;
 use super::super::progress::{Report, warn};
-use super::args::RenderArgs;
+use super::args::{Crop, RenderArgs};
 use super::format::Format;
 use super::memory;
 use crate::render::Form;
@@ -26,18 +26,24 @@ pub(super) fn animation(args: &RenderArgs) -> anyhow::Result<Animation> {
             return Err(misuse(format!("{flag} needs --method table")));
         }
     }
-    if let Some(size) = args.size {
-        memory::check(args.max_memory, size, Form::Grey8)?;
-    }
     let animation = Animation::load_with(&args.scene, &overrides(args));
-    let animation = animation.map_err(|error| with_hint(args, error))?;
+    let animation = match animation {
+        Ok(animation) => animation,
+        Err(error) => {
+            // A size that no scene may have is too large for memory first.
+            if let (Some(size), None) = (args.size, args.crop) {
+                memory::check(args.max_memory, size, Form::Grey8)?;
+            }
+            return Err(with_hint(args, error));
+        }
+    };
     if args.exposure.is_some() && !animation.shows_colour() {
         return Err(misuse(
             "--exposure changes light, and this scene has none; give it a [disk.light] or a [sky], or leave \
              --exposure out",
         ));
     }
-    memory::check(args.max_memory, animation.image(), Form::Grey8)?;
+    memory::check(args.max_memory, animation.size(), Form::Grey8)?;
     Ok(animation)
 }
 
@@ -61,6 +67,11 @@ fn overrides(args: &RenderArgs) -> Vec<Override> {
             let flag = format!("--size {width}x{height}");
             overrides.push(Override::new(flag, key, i64::from(side)));
         }
+    }
+    if let Some(Crop(part)) = args.crop {
+        let [left, top, width, height] = part;
+        let flag = format!("--crop {left},{top},{width},{height}");
+        overrides.push(Override::new(flag, "image.crop", part.to_vec()));
     }
     if let Some(smooth) = args.antialias {
         let flag = format!("--antialias {smooth}");

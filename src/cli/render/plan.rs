@@ -52,7 +52,7 @@ impl<'a> Plan<'a> {
         let count = frames.count();
         let (format, destination) = output::checked(args, animation, count)?;
         let form = form::checked(args, animation, format)?;
-        memory::check(args.max_memory, animation.image(), form)?;
+        memory::check(args.max_memory, animation.size(), form)?;
         let needs = Needs::of_animation(animation, form)?;
         let needed = needs.table().map(|candidate| candidate.name);
         let mut inputs = vec![(args.scene.clone(), "scene")];
@@ -75,7 +75,7 @@ impl<'a> Plan<'a> {
             && format.is_film()
             && let Destination::File(path) = &destination
         {
-            let bytes = film::frame_bytes(format, form, first.image());
+            let bytes = film::frame_bytes(format, form, first.size());
             writable::check_space(path, count.saturating_mul(bytes))?;
         }
         for number in numbers {
@@ -174,7 +174,7 @@ impl<'a> Plan<'a> {
 
     /// The number of pixels of a frame.
     pub(super) fn pixels(&self) -> u64 {
-        let size = self.first.image();
+        let size = self.first.size();
         u64::from(size.width) * u64::from(size.height)
     }
 
@@ -183,9 +183,12 @@ impl<'a> Plan<'a> {
     /// # Errors
     /// Not enough memory, or a picture that is too large for the format.
     pub(super) fn encode(&self, pixels: Pixels<'_>, origin: &FrameOrigin) -> io::Result<Vec<u8>> {
-        let size = self.first.image();
+        let size = self.first.size();
         match (self.format, pixels) {
-            (Format::Exr, Pixels::Planes(planes)) => exr::encode(planes, size, origin),
+            (Format::Exr, Pixels::Planes(planes)) => {
+                let windows = (self.first.image(), self.first.region());
+                exr::encode(planes, windows, origin)
+            }
             (Format::Npz, Pixels::Planes(planes)) => npz::encode(planes, size, origin),
             _ => png::encode(pixels, size, self.depth() == 1, origin),
         }

@@ -50,7 +50,7 @@ pub(super) struct Outcome {
 /// A picture or a film that cannot be drawn or written.
 pub(super) fn run(plan: &Plan<'_>, method: &Method, report: Report) -> anyhow::Result<Outcome> {
     let interrupt = Interrupt::install()?;
-    let rows = report.bar(u64::from(plan.first.image().height), "drawing", "rows");
+    let rows = report.bar(u64::from(plan.first.size().height), "drawing", "rows");
     let row_done = || {
         if plan.count == 1 {
             rows.inc(1);
@@ -62,7 +62,7 @@ pub(super) fn run(plan: &Plan<'_>, method: &Method, report: Report) -> anyhow::R
     let reading_sky = sky.as_ref().map(|_| start.elapsed());
     let sky_bytes = sky.as_ref().map_or(0, |sky| sky::bytes(sky));
     let left = ByteSize(plan.args.max_memory.as_u64().saturating_sub(sky_bytes));
-    let at_a_time = memory::frames_in(left, plan.first.image(), plan.form);
+    let at_a_time = memory::frames_in(left, plan.first.size(), plan.form);
     let start = Instant::now();
     let (animation, form) = (plan.animation, plan.form);
     let stats = FrameSource::with(animation, form, method, sky, &row_done, |frames| {
@@ -81,7 +81,7 @@ pub(super) fn run(plan: &Plan<'_>, method: &Method, report: Report) -> anyhow::R
         };
         match &plan.destination {
             destination if plan.format.is_film() => {
-                let (size, rate) = (plan.first.image(), plan.animation.rate());
+                let (size, rate) = (plan.first.size(), plan.animation.rate());
                 run.film(Film::begin(plan.format, destination, size, rate)?)?;
             }
             Destination::Sequence(pattern) => run.sequence(pattern)?,
@@ -110,7 +110,7 @@ fn read_sky(
     let Some(sky) = plan.sky.filter(|_| plan.is_unfinished(origin)) else {
         return Ok(None);
     };
-    let frame = memory::of_frame(plan.first.image(), plan.form);
+    let frame = memory::of_frame(plan.first.size(), plan.form);
     let source = sky::read(sky, frame, plan.args.max_memory, report)?;
     Ok(Some(Arc::new(source)))
 }

@@ -48,7 +48,7 @@ pub(super) fn report(
     }
     interrupted?;
 
-    let (destination, size) = (&plan.destination, plan.first.image());
+    let (destination, size) = (&plan.destination, plan.first.size());
     let what = format!("{} × {}, {method}", size.width, size.height);
     let time = duration(outcome.elapsed);
     if plan.count == 1 {

@@ -83,7 +83,7 @@ pub(super) fn run(
              choose a wider --fov"
         )
     })?;
-    destination.write(outline_svg(&outline, scene.image()).as_bytes())?;
+    destination.write(outline_svg(&outline, &scene).as_bytes())?;
     let time = duration(start.elapsed());
     report.note(format_args!("{destination}: the disk's outline in {time}"));
     Ok(())

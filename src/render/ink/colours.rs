@@ -61,13 +61,13 @@ impl Colours {
         }
     }
 
-    /// Returns the linear light of pixels of a row from their amplitude, the given quantity of a patch: its mean over
-    /// `parts` places a side of each. `columns` are the first one and the one after the last.
+    /// Returns the linear light of `count` pixels of a row from their amplitude, the given quantity of a patch: its
+    /// mean over `parts` places a side of each. The centre of the first one is at a place of the picture.
     pub(super) fn of_row<const N: usize>(
         &self,
         (patch, quantity): (&Patch<N>, usize),
-        (from, to): (usize, usize),
-        y: f64,
+        (x, y): (f64, f64),
+        count: usize,
         parts: usize,
     ) -> RowLight {
         let (mut light, mut amplitudes) = ([[0.0; 3]; TILE.0], [0.0; TILE.0]);
@@ -75,9 +75,8 @@ impl Colours {
         for j in 0..parts {
             let row = patch.row(quantity, y + offset(j, parts));
             for i in 0..parts {
-                let x = from as f64 + 0.5 + offset(i, parts);
-                row.fill(x, &mut amplitudes[..to - from]);
-                for (light, amplitude) in light.iter_mut().zip(&amplitudes[..to - from]) {
+                row.fill(x + offset(i, parts), &mut amplitudes[..count]);
+                for (light, amplitude) in light.iter_mut().zip(&amplitudes[..count]) {
                     let rgb = self.radiance.rgb(*amplitude);
                     for (sum, c) in light.iter_mut().zip(rgb) {
                         *sum += share * c;

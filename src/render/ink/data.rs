@@ -3,6 +3,7 @@
 use std::sync::LazyLock;
 
 use super::directions::{paint_directions, set_direction};
+use super::rows::Samples;
 use super::{Averaging, Colours, Ink, Part, Quantities, Stretch, amplitude};
 use crate::light::{Sight, emission_cosine};
 use crate::render::error::RenderError;
@@ -11,8 +12,8 @@ use crate::render::patch::{Patch, PatchFit};
 use crate::render::planes::Plane;
 use crate::render::shader::{PlaceRay, Shader};
 use crate::render::sky::{SkyShader, SkySight};
-use crate::render::tiles::Run;
-use crate::scene::{Layer, LayerSet, Light, Scene};
+use crate::render::tiles::{Run, TileRow, tiles_of};
+use crate::scene::{Layer, LayerSet, Light, Scene, View};
 
 /// Nodes a side of a patch.
 const NODES: usize = 9;
@@ -77,20 +78,21 @@ impl Quantity {
 
 /// A band of each layer.
 pub(in crate::render) struct PlaneRows<'b> {
-    planes: [Option<(Layer, &'b mut [f32])>; MOST_LAYERS],
+    planes: [Option<(Layer, Samples<'b, f32>)>; MOST_LAYERS],
     pub(super) width: usize,
 }
 
 impl<'b> PlaneRows<'b> {
-    /// Splits planes of `width` pixels a row into bands of `rows` rows.
+    /// Splits planes of the drawn part of a view into bands.
     pub(in crate::render) fn bands(
         planes: &'b mut [Plane],
-        width: usize,
-        rows: usize,
+        view: &View,
     ) -> impl Iterator<Item = Self> {
+        let (drawn, width) = (view.region().width as usize, tiles_of(view).width as usize);
         let mut planes = planes.iter_mut().map(|plane| {
-            let samples = width * rows * plane.layer.channels();
-            (plane.layer, plane.values.chunks_mut(samples))
+            let channels = plane.layer.channels();
+            let bands = Samples::bands(&mut plane.values, view, drawn * channels, channels);
+            (plane.layer, bands)
         });
         let mut parts: [_; MOST_LAYERS] = core::array::from_fn(|_| planes.next());
         core::iter::from_fn(move || {
@@ -105,7 +107,13 @@ impl<'b> PlaneRows<'b> {
 
     pub(super) fn iter(&mut self) -> impl Iterator<Item = (Layer, &mut [f32])> {
         let planes = self.planes.iter_mut().flatten();
-        planes.map(|(layer, plane)| (*layer, &mut **plane))
+        planes.map(|(layer, plane)| (*layer, plane.all().0))
+    }
+
+    /// Hands over the pixels that are drawn.
+    pub(in crate::render) fn hand_over(&mut self) {
+        let planes = self.planes.iter_mut().flatten();
+        planes.for_each(|(_, plane)| plane.hand_over());
     }
 }
 
@@ -250,18 +258,12 @@ impl<'a> Data<'a> {
     }
 }
 
-/// Adds the hole's shadow where there is no disk, to rows from row `top` of the picture on: what the centre sees, or
-/// with smooth edges the covered share.
-fn add_shadow(
-    alpha: &mut [f32],
-    width: usize,
-    shader: &Shader<'_>,
-    top: usize,
-    averaging: Averaging,
-) {
+/// Adds the hole's shadow where there is no disk, to a band: what the centre sees, or with smooth edges the covered
+/// share.
+fn add_shadow(alpha: &mut [f32], shader: &Shader<'_>, band: TileRow, averaging: Averaging) {
     for (i, alpha) in alpha.iter_mut().enumerate() {
         if *alpha == 0.0 {
-            let place = ((i % width) as f64 + 0.5, (top + i / width) as f64 + 0.5);
+            let place = band.centre(i % band.width, i / band.width);
             *alpha = match averaging {
                 Averaging::Square => shader.shadow(place) as f32,
                 Averaging::Centre => f32::from(u8::from(shader.shadow_covers(place))),
@@ -310,24 +312,28 @@ impl Ink<NODES> for Data<'_> {
         &self,
         band: &mut Self::Band<'_>,
         sky: &SkyShader<'_>,
-        rows: (usize, usize),
+        place: TileRow,
         runs: &[Run],
     ) {
         if self.needs_directions() {
-            paint_directions(band, sky, rows, runs);
+            paint_directions(band, sky, place, runs);
         }
     }
 
-    fn finish(&self, band: &mut Self::Band<'_>, shader: &Shader<'_>, top: usize) {
+    fn finish(&self, band: &mut Self::Band<'_>, shader: &Shader<'_>, place: TileRow) {
         if self.has_sky {
-            return self.finish_sky(band);
-        }
-        let width = band.width;
-        for (layer, plane) in band.iter() {
-            if layer == Layer::Alpha {
-                add_shadow(plane, width, shader, top, self.averaging);
+            self.finish_sky(band);
+        } else {
+            for (layer, plane) in band.iter() {
+                if layer == Layer::Alpha {
+                    add_shadow(plane, shader, place, self.averaging);
+                }
             }
         }
+    }
+
+    fn hand_over(&self, band: &mut Self::Band<'_>) {
+        band.hand_over();
     }
 
     fn fit(&self) -> &PatchFit<NODES> {
@@ -374,7 +380,11 @@ impl Ink<NODES> for Data<'_> {
         patch: &Patch<NODES>,
     ) {
         let Stretch {
-            order, from, to, y, ..
+            order,
+            from,
+            to,
+            place: (x, y),
+            ..
         } = stretch;
         let (outer, inner) = shader.u_edges;
         let (least, greatest) = ((1.0 / inner) as f32, (1.0 / outer) as f32);
@@ -390,7 +400,7 @@ impl Ink<NODES> for Data<'_> {
                 match layer {
                     Layer::Order if shader.is_in_plane => {
                         for (i, pixel) in pixels.iter_mut().enumerate() {
-                            let ray = shader.ray(((from + i) as f64 + 0.5, y));
+                            let ray = shader.ray((x + i as f64, y));
                             *pixel = shader.told(order, &ray) as f32;
                         }
                     }
@@ -402,13 +412,13 @@ impl Ink<NODES> for Data<'_> {
             if layer == Layer::Colour {
                 if let Some(colours) = self.colours {
                     let parts = colours.parts(patch, self.averaging);
-                    let light = colours.of_row((patch, place), (from, to), y, parts);
+                    let light = colours.of_row((patch, place), (x, y), to - from, parts);
                     let (pixels, _) = pixels.as_chunks_mut::<3>();
                     pixels.copy_from_slice(&light[..pixels.len()]);
                 }
                 continue;
             }
-            patch.row(place, y).fill(from as f64 + 0.5, pixels);
+            patch.row(place, y).fill(x, pixels);
             match layer {
                 Layer::Radius => pixels
                     .iter_mut()

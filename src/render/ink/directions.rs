@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use super::PlaneRows;
 use crate::render::patch::{Misfit, Patch, PatchFit};
 use crate::render::sky::{SkyShader, SkySight};
-use crate::render::tiles::{Rectangle, Run, TILE, Tiled, paint_runs};
+use crate::render::tiles::{Rectangle, Run, TILE, TileRow, Tiled, paint_runs};
 use crate::scene::Layer;
 use crate::sky::place;
 
@@ -17,27 +17,20 @@ static FIT: LazyLock<PatchFit<NODES>> = LazyLock::new(PatchFit::new);
 /// How far a direction's component, or a place, may be off: a fraction of a float's last unit.
 const TOLERANCE: f64 = 1e-8;
 
-/// Paints the directions of runs of a band, given by its first row in the picture and its number of rows.
+/// Paints the directions of runs of a band.
 pub(super) fn paint_directions(
     band: &mut PlaneRows<'_>,
     sky: &SkyShader<'_>,
-    (top, rows): (usize, usize),
+    place: TileRow,
     runs: &[Run],
 ) {
-    let width = band.width;
-    let mut tiles = DirectionTiles {
-        top,
-        width,
-        sky,
-        band,
-    };
-    paint_runs(&mut tiles, width, rows, runs);
+    let mut tiles = DirectionTiles { place, sky, band };
+    paint_runs(&mut tiles, place, runs);
 }
 
 /// Directions, tile by tile.
 struct DirectionTiles<'s, 'b, 'm> {
-    top: usize,
-    width: usize,
+    place: TileRow,
     sky: &'s SkyShader<'s>,
     band: &'m mut PlaneRows<'b>,
 }
@@ -96,7 +89,7 @@ fn wrapped(u: f32) -> f32 {
 
 impl Tiled<NODES> for DirectionTiles<'_, '_, '_> {
     fn is_empty(&self, bounds: Rectangle) -> bool {
-        self.sky.is_in_shadow(bounds, self.top)
+        self.sky.is_in_shadow(bounds, self.place)
     }
 
     fn fit(&mut self, bounds: Rectangle, patch: &mut Patch<NODES>) -> Result<(), Misfit> {
@@ -112,16 +105,16 @@ impl Tiled<NODES> for DirectionTiles<'_, '_, '_> {
             values[3] -= (values[3] - first + 0.5).floor();
             true
         };
-        let corners = bounds.centres(self.top);
+        let corners = bounds.centres(self.place);
         FIT.fit(patch, corners, 5, |_| TOLERANCE, evaluate)
     }
 
     fn put_patch(&mut self, bounds: Rectangle, runs: &[Run], patch: &Patch<NODES>) {
         for (row, (from, to)) in bounds.clip(runs) {
-            let y = (self.top + row) as f64 + 0.5;
-            let first = row * self.width + from;
+            let (x, y) = self.place.centre(from, row);
+            let first = row * self.place.width + from;
             set(self.band, first, to - from, |quantity, values| {
-                patch.row(quantity, y).fill(from as f64 + 0.5, values);
+                patch.row(quantity, y).fill(x, values);
                 if quantity == 3 {
                     for u in values {
                         *u = wrapped(*u);
@@ -132,9 +125,9 @@ impl Tiled<NODES> for DirectionTiles<'_, '_, '_> {
     }
 
     fn put_pixel(&mut self, row: usize, column: usize) {
-        let place = (column as f64 + 0.5, (self.top + row) as f64 + 0.5);
-        if let Some(sight) = self.sky.at(place) {
-            set_direction(self.band, row * self.width + column, self.sky, &sight);
+        if let Some(sight) = self.sky.at(self.place.centre(column, row)) {
+            let pixel = row * self.place.width + column;
+            set_direction(self.band, pixel, self.sky, &sight);
         }
     }
 }

@@ -97,6 +97,10 @@ impl<T: Code> Ink<NODES> for Display<'_, T> {
         }
     }
 
+    fn hand_over(&self, band: &mut Self::Band<'_>) {
+        band.hand_over();
+    }
+
     fn fit(&self) -> &PatchFit<NODES> {
         &FIT
     }
@@ -126,7 +130,11 @@ impl<T: Code> Ink<NODES> for Display<'_, T> {
         band: &mut Self::Band<'_>,
         _: &Shader<'_>,
         Stretch {
-            row, from, to, y, ..
+            row,
+            from,
+            to,
+            place,
+            ..
         }: Stretch,
         patch: &Patch<NODES>,
     ) {
@@ -137,7 +145,7 @@ impl<T: Code> Ink<NODES> for Display<'_, T> {
         }
         let parts = self.colours.parts(patch, self.averaging);
         if parts > 1 {
-            let light = self.colours.of_row((patch, 0), (from, to), y, parts);
+            let light = self.colours.of_row((patch, 0), place, to - from, parts);
             for (pixel, light) in pixels.iter_mut().zip(light) {
                 *pixel = T::displayed(&self.colours.display, light);
             }
@@ -145,7 +153,7 @@ impl<T: Code> Ink<NODES> for Display<'_, T> {
         }
         let mut amplitudes = [0.0; TILE.0];
         let amplitudes = &mut amplitudes[..to - from];
-        patch.row(0, y).fill(from as f64 + 0.5, amplitudes);
+        patch.row(0, place.1).fill(place.0, amplitudes);
         T::set(pixels, self.colours, amplitudes);
     }
 

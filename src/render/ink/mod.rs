@@ -15,7 +15,7 @@ use super::mixture::Mixture;
 use super::patch::{Patch, PatchFit};
 use super::shader::{PlaceRay, Shader};
 use super::sky::SkyShader;
-use super::tiles::Run;
+use super::tiles::{Run, TileRow};
 use crate::light::{Sight, flux};
 
 /// The most quantities that are interpolated.
@@ -38,8 +38,8 @@ pub(super) struct Stretch {
     pub(super) row: usize,
     pub(super) from: usize,
     pub(super) to: usize,
-    /// The row's centre in the picture, from the top.
-    pub(super) y: f64,
+    /// The centre of the first one, in pixels from the picture's left and its top.
+    pub(super) place: (f64, f64),
 }
 
 /// Paints pixels of one kind. What is smooth over the picture is interpolated with N nodes a side.
@@ -58,22 +58,24 @@ pub(super) trait Ink<const N: usize>: Sync {
         false
     }
 
-    /// Paints the directions in which the rays of pixels leave: of runs of a band, given by its first row and its
-    /// number of rows.
+    /// Paints the directions in which the rays of pixels leave: of runs of a band.
     fn put_directions(
         &self,
         band: &mut Self::Band<'_>,
         sky: &SkyShader<'_>,
-        rows: (usize, usize),
+        place: TileRow,
         runs: &[Run],
     ) {
-        let _ = (band, sky, rows, runs);
+        let _ = (band, sky, place, runs);
     }
 
-    /// Adds to a band, which begins at row `top` of the picture, what is seen beside the disk.
-    fn finish(&self, band: &mut Self::Band<'_>, shader: &Shader<'_>, top: usize) {
-        let _ = (band, shader, top);
+    /// Adds to a band what is seen beside the disk.
+    fn finish(&self, band: &mut Self::Band<'_>, shader: &Shader<'_>, place: TileRow) {
+        let _ = (band, shader, place);
     }
+
+    /// Hands over the pixels of a finished band that are drawn.
+    fn hand_over(&self, band: &mut Self::Band<'_>);
 
     /// What fits patches.
     fn fit(&self) -> &PatchFit<N>;

@@ -18,7 +18,7 @@ pub(super) use stars::StarImages;
 use stars::StarView;
 
 use super::frame::Threads;
-use super::tiles::Run;
+use super::tiles::{Run, TileRow};
 use crate::isoradial::EscapeCurve;
 use crate::scene::{Scene, View};
 use crate::sky::{SkySource, StarField};
@@ -89,10 +89,10 @@ impl<'a> FrameSky<'a> {
         self.stars.is_some()
     }
 
-    /// Paints what fills the sky into the light of runs of a band, given by its first row and its number of rows.
-    pub(super) fn paint(&self, rows: (usize, usize), runs: &[Run], light: &mut [[f32; 3]]) {
+    /// Paints what fills the sky into the light of runs of a band.
+    pub(super) fn paint(&self, band: TileRow, runs: &[Run], light: &mut [[f32; 3]]) {
         if let Some(backdrop) = &self.backdrop {
-            SkyPainter::new(self.shader, backdrop).paint(rows, runs, light);
+            SkyPainter::new(self.shader, backdrop).paint(band, runs, light);
         }
     }
 }

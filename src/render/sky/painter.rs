@@ -8,7 +8,7 @@ use super::backdrop::Backdrop;
 use super::shader::{SkyShader, outward, place_change};
 use crate::render::patch::{Misfit, Patch, PatchFit};
 use crate::render::shadow;
-use crate::render::tiles::{Rectangle, Run, TILE, Tiled, paint_runs};
+use crate::render::tiles::{Rectangle, Run, TILE, TileRow, Tiled, paint_runs};
 use crate::sky::lattice::{COLUMNS, LANES, PixelRow, PlaceRow};
 use crate::sky::place;
 use crate::sky::simd::level;
@@ -43,17 +43,14 @@ impl<'a> SkyPainter<'a> {
         Self { shader, backdrop }
     }
 
-    /// Paints pixels of a band, which begins at row `top` of the picture and has `rows` rows: runs, sorted by rows.
-    /// `light` holds the band's pixels, row by row.
-    pub(super) fn paint(&self, (top, rows): (usize, usize), runs: &[Run], light: &mut [[f32; 3]]) {
-        let width = self.shader.view.width() as usize;
+    /// Paints pixels of a band: runs, sorted by rows. `light` holds the band's pixels, row by row.
+    pub(super) fn paint(&self, band: TileRow, runs: &[Run], light: &mut [[f32; 3]]) {
         let mut tiles = SkyTiles {
             painter: self,
-            top,
-            width,
+            band,
             light,
         };
-        paint_runs(&mut tiles, width, rows, runs);
+        paint_runs(&mut tiles, band, runs);
     }
 
     /// Returns the mean light of a pixel, its centre at a place of the picture. What the shadow covers is black.
@@ -135,20 +132,19 @@ impl<'a> SkyPainter<'a> {
 /// The sky, tile by tile.
 struct SkyTiles<'p, 'a, 'm> {
     painter: &'p SkyPainter<'a>,
-    top: usize,
-    width: usize,
+    band: TileRow,
     light: &'m mut [[f32; 3]],
 }
 
 impl Tiled<NODES> for SkyTiles<'_, '_, '_> {
     fn is_empty(&self, bounds: Rectangle) -> bool {
-        self.painter.shader.is_in_shadow(bounds, self.top)
+        self.painter.shader.is_in_shadow(bounds, self.band)
     }
 
     fn fit(&mut self, bounds: Rectangle, patch: &mut Patch<NODES>) -> Result<(), Misfit> {
         let shader = &self.painter.shader;
         bounds.check_angle(shader.view)?;
-        let corners = bounds.centres(self.top);
+        let corners = bounds.centres(self.band);
         let middle = (
             0.5 * (corners.0.0 + corners.1.0),
             0.5 * (corners.0.1 + corners.1.1),
@@ -180,8 +176,8 @@ impl Tiled<NODES> for SkyTiles<'_, '_, '_> {
     }
 
     fn put_pixel(&mut self, row: usize, column: usize) {
-        let place = (column as f64 + 0.5, (self.top + row) as f64 + 0.5);
-        self.light[row * self.width + column] = self.painter.pixel(place);
+        let place = self.band.centre(column, row);
+        self.light[row * self.band.width + column] = self.painter.pixel(place);
     }
 }
 
@@ -197,10 +193,10 @@ impl SkyTiles<'_, '_, '_> {
     ) {
         let (first, last) = bounds.columns;
         let columns = last - first;
-        let left = first as f64;
+        let left = (self.band.left + first) as f64;
         let origin = [patch.middle(0), patch.middle(1)];
         let (mut above, mut centres, mut below) = (NO_PLACES, NO_PLACES, NO_PLACES);
-        let middle = (self.top + bounds.rows.0.midpoint(bounds.rows.1)) as f64;
+        let middle = (self.band.top + bounds.rows.0.midpoint(bounds.rows.1)) as f64;
         fill_places(patch, origin, (left, middle), &mut above, columns + 1);
         fill_places(patch, origin, (left, middle + 1.0), &mut below, columns + 1);
         let pixels = PixelRow {
@@ -213,7 +209,7 @@ impl SkyTiles<'_, '_, '_> {
         let mut done = None;
         let mut runs = bounds.clip(runs).peekable();
         while let Some(&(row, _)) = runs.peek() {
-            let y = (self.top + row) as f64;
+            let y = (self.band.top + row) as f64;
             let goes_on = done.is_some_and(|done| done + 1 == row);
             if goes_on {
                 core::mem::swap(&mut above, &mut below);
@@ -229,7 +225,7 @@ impl SkyTiles<'_, '_, '_> {
             };
             filler.row(simd, &pixels, goes_on, &mut means);
             while let Some((_, (from, to))) = runs.next_if(|(of_row, _)| *of_row == row) {
-                let light = &mut self.light[row * self.width..][from..to];
+                let light = &mut self.light[row * self.band.width..][from..to];
                 for (light, mean) in light.iter_mut().zip(&means[from - first..]) {
                     *light = [mean[0], mean[1], mean[2]];
                 }

@@ -16,7 +16,7 @@ use core::f64::consts::{PI, TAU};
 use glam::DVec3;
 
 use crate::isoradial::{Escape, EscapeCurve};
-use crate::render::tiles::Rectangle;
+use crate::render::tiles::{Rectangle, TileRow};
 use crate::scene::{PixelRay, Scene, View};
 use crate::sky::Orientation;
 
@@ -149,8 +149,8 @@ impl<'a> SkyShader<'a> {
 
     /// Whether a rectangle of pixels lies in the hole's shadow, as far as its middle tells: over a distance in the
     /// picture, in X and Y, `z − κ_c s` changes by at most `√(1 + κ_c²)` times that.
-    pub(in crate::render) fn is_in_shadow(&self, bounds: Rectangle, top: usize) -> bool {
-        let ((left, upper), (right, lower)) = bounds.centres(top);
+    pub(in crate::render) fn is_in_shadow(&self, bounds: Rectangle, band: TileRow) -> bool {
+        let ((left, upper), (right, lower)) = bounds.centres(band);
         let (width, height) = (right - left + 1.0, lower - upper + 1.0);
         let reach = 0.5 * (width * width + height * height).sqrt() * self.view.pixel_side();
         let (x, y) = (0.5 * (left + right), 0.5 * (upper + lower));

@@ -21,7 +21,8 @@ use rayon::prelude::*;
 use super::shader::SkyShader;
 use crate::isoradial::{EscapeCurve, Image};
 use crate::render::frame::Threads;
-use crate::scene::{PixelRay, Projection, View};
+use crate::render::tiles::{TileRow, tiles_of};
+use crate::scene::{PixelRay, Projection, Region, View};
 use crate::sky::{Star, StarField};
 
 /// Brighter images count as this bright, so that sums of 32 bits stay finite.
@@ -101,16 +102,20 @@ impl StarImages {
             let chunks = stars.zip(&mut self.chunks);
             chunks.for_each(|((stars, lights), splats)| find(stars, lights, splats));
         }
-        self.sort(seen.shader.view.height() as usize, rows);
+        self.sort(tiles_of(seen.shader.view), rows);
     }
 
-    /// Sorts the images into bands. In each they stay in the order of the stars.
-    fn sort(&mut self, height: usize, rows: usize) {
-        let bands = height.div_ceil(rows);
-        // An image falls on two rows, which may be in two bands.
+    /// Sorts the images on a part of the picture into bands. In each they stay in the order of the stars.
+    fn sort(&mut self, part: Region, rows: usize) {
+        let (left, top) = (i64::from(part.left), i64::from(part.top));
+        let (width, height) = (i64::from(part.width), i64::from(part.height));
+        let bands = (height as usize).div_ceil(rows);
+        // An image falls on two columns and on two rows, which may be in two bands.
         let bands_of = |splat: &Splat| {
-            let last = (splat.row + 1).clamp(0, height as i32 - 1) as usize;
-            splat.row.max(0) as usize / rows..=last / rows
+            let (column, row) = (i64::from(splat.column) - left, i64::from(splat.row) - top);
+            let is_in = (-1..width).contains(&column) && (-1..height).contains(&row);
+            let last = (row + 1).clamp(0, height - 1) as usize;
+            (row.max(0) as usize / rows..=last / rows).filter(move |_| is_in)
         };
         self.firsts.clear();
         self.firsts.resize(bands + 1, 0);
@@ -134,12 +139,12 @@ impl StarImages {
         }
     }
 
-    /// Adds the images of a band, given by its number, its first row and its number of rows, to its light.
-    pub(in crate::render) fn add(&self, view: &View, place: BandPlace, light: &mut [[f32; 3]]) {
-        let width = view.width() as usize;
-        self.visit(view, place, |splat, row, column, share| {
-            let share = share * over_solid_angle(view, column, place.1 + row);
-            for (pixel, c) in light[row * width + column].iter_mut().zip(splat.light) {
+    /// Adds the images of a band to its light.
+    pub(in crate::render) fn add(&self, view: &View, band: TileRow, light: &mut [[f32; 3]]) {
+        self.visit(band, |splat, row, column, share| {
+            let share = share * over_solid_angle(view, band.left + column, band.top + row);
+            let pixel = &mut light[row * band.width + column];
+            for (pixel, c) in pixel.iter_mut().zip(splat.light) {
                 *pixel += share * c;
             }
         });
@@ -147,29 +152,19 @@ impl StarImages {
 
     /// Calls `pixel` with the row and the column of each pixel of a band that an image falls on, again and again where
     /// several do.
-    pub(in crate::render) fn pixels(
-        &self,
-        view: &View,
-        place: BandPlace,
-        mut pixel: impl FnMut(usize, usize),
-    ) {
-        self.visit(view, place, |_, row, column, _| pixel(row, column));
+    pub(in crate::render) fn pixels(&self, band: TileRow, mut pixel: impl FnMut(usize, usize)) {
+        self.visit(band, |_, row, column, _| pixel(row, column));
     }
 
     /// Calls `pixel` with each image of a band, the row and the column of a pixel that it falls on, and its share.
-    fn visit(
-        &self,
-        view: &View,
-        (band, top, rows): BandPlace,
-        mut pixel: impl FnMut(&Splat, usize, usize, f32),
-    ) {
-        let width = i64::from(view.width());
-        for splat in &self.sorted[self.firsts[band]..self.firsts[band + 1]] {
-            let row = i64::from(splat.row) - top as i64;
-            let column = i64::from(splat.column);
+    fn visit(&self, band: TileRow, mut pixel: impl FnMut(&Splat, usize, usize, f32)) {
+        let (width, rows) = (band.width as i64, band.rows as i64);
+        for splat in &self.sorted[self.firsts[band.number]..self.firsts[band.number + 1]] {
+            let row = i64::from(splat.row) - band.top as i64;
+            let column = i64::from(splat.column) - band.left as i64;
             for (row, down) in [(row, 1.0 - splat.down), (row + 1, splat.down)] {
                 for (column, right) in [(column, 1.0 - splat.right), (column + 1, splat.right)] {
-                    if (0..rows as i64).contains(&row) && (0..width).contains(&column) {
+                    if (0..rows).contains(&row) && (0..width).contains(&column) {
                         pixel(splat, row as usize, column as usize, right * down);
                     }
                 }
@@ -177,9 +172,6 @@ impl StarImages {
         }
     }
 }
-
-/// A band's number, its first row in the picture, and its number of rows.
-pub(in crate::render) type BandPlace = (usize, usize, usize);
 
 /// Returns the solid angle of a pixel in the picture's centre over that of a pixel.
 fn over_solid_angle(view: &View, column: usize, row: usize) -> f32 {

@@ -5,12 +5,22 @@ use crate::scene::error::SceneError;
 use crate::scene::layers::LayerSet;
 use crate::scene::sky::Sky;
 use crate::scene::validate;
-use crate::scene::values::{ImageSize, Light, Tone};
+use crate::scene::values::{ImageSize, Light, Region, Tone};
 
 impl Animation {
-    /// The size of every frame.
+    /// The size of every whole frame.
     pub fn image(&self) -> ImageSize {
         self.settings.size
+    }
+
+    /// The part of every frame that is drawn.
+    pub fn region(&self) -> Region {
+        self.settings.region()
+    }
+
+    /// The size of what is drawn of every frame: of [`Self::region`].
+    pub fn size(&self) -> ImageSize {
+        self.region().size()
     }
 
     /// The light of the disk; `None` where the disk only covers.
@@ -41,9 +51,19 @@ impl Animation {
     /// The same animation as pictures of another size; the vertical field of view stays.
     ///
     /// # Errors
-    /// [`SceneError::Value`] for a size that is not allowed.
+    /// [`SceneError::Value`] for a size that is not allowed, and for one that does not have the part that is drawn.
     pub fn with_size(mut self, width: u32, height: u32) -> Result<Self, SceneError> {
         (self.file.image.width, self.file.image.height) = (i64::from(width), i64::from(height));
+        self.with_settings()
+    }
+
+    /// The same animation of which only a part of each frame is drawn, or all of it (`None`).
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for a part without pixels, and for one that reaches beyond the picture.
+    pub fn with_crop(mut self, crop: Option<Region>) -> Result<Self, SceneError> {
+        self.file.image.crop =
+            crop.map(|part| [part.left, part.top, part.width, part.height].map(i64::from));
         self.with_settings()
     }
 

@@ -37,6 +37,9 @@ impl From<&Scene> for SceneFile {
                 tone: scene.tone(),
                 bits: i64::from(scene.bits()),
                 layers: scene.layers(),
+                crop: scene
+                    .crop()
+                    .map(|part| [part.left, part.top, part.width, part.height].map(i64::from)),
             },
             sky: scene.shared_sky().cloned(),
             animation: None,
@@ -80,6 +83,7 @@ impl fmt::Display for SceneFile {
         if !image.layers.is_empty() {
             writeln!(f, "layers = {}", image.layers)?;
         }
+        line(f, "crop", image.crop)?;
         animation
             .as_ref()
             .map_or(Ok(()), |animation| write!(f, "\n{animation}"))

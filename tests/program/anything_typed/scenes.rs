@@ -13,7 +13,7 @@ use crate::harness::{files, with_animation};
 const SCENES: u32 = 1000;
 
 /// A scene's keys: the section, the key, and valid values.
-const KEYS: [(&str, &str, &[&str]); 27] = [
+const KEYS: [(&str, &str, &[&str]); 28] = [
     ("camera", "position", &["[20, 0, 5]", "[0.0, 1.2, 0.1]"]),
     ("camera", "focus", &["[0, 0, 0]", "[1, 2, 3]"]),
     ("camera", "up", &["[0, 0.1, 1]"]),
@@ -35,6 +35,7 @@ const KEYS: [(&str, &str, &[&str]); 27] = [
     ("image", "bits", &["8", "16"]),
     // A PNG picture holds none.
     ("image", "layers", &["[]"]),
+    ("image", "crop", &["[0, 0, 1, 1]"]),
     ("animation", "frames", &["5"]),
     ("animation", "fps", &["24", "23.976"]),
     ("animation", "interpolation", &["\"smooth\"", "\"linear\""]),

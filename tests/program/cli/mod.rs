@@ -2,7 +2,9 @@
 //! answers than the library.
 
 mod camera;
+mod crops;
 mod isoradials;
+mod projections;
 mod render;
 mod scene;
 mod table;

@@ -114,7 +114,7 @@ pub(super) struct Place {
 
 /// A view, as curves are drawn in it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Projection<'a> {
+pub(super) struct EdgeMap<'a> {
     pub(super) view: &'a View,
     pub(super) curves: &'a Isoradials,
     /// M, row by row, of a flat picture.
@@ -142,7 +142,7 @@ fn picture_matrix(view: &View) -> [[f64; 3]; 3] {
     ]
 }
 
-impl<'a> Projection<'a> {
+impl<'a> EdgeMap<'a> {
     pub(super) fn new(view: &'a View, curves: &'a Isoradials) -> Self {
         let (width, height) = (f64::from(view.width()), f64::from(view.height()));
         Self {
