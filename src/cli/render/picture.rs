@@ -38,7 +38,7 @@ pub(in crate::cli) fn encode(
     };
     let size = scene.image();
     Ok(match pixels {
-        Pixels::Planes(planes) => exr::encode(planes, size, &origin)?,
+        Pixels::Planes(planes) => exr::encode(planes, (size, scene.region()), &origin)?,
         Pixels::Grey8(_) => png::encode(pixels, size, !scene.antialias(), &origin)?,
         _ => png::encode(pixels, size, false, &origin)?,
     })

@@ -462,9 +462,11 @@ impl Viewer {
     }
 }
 
-/// Returns the scene as the largest picture that fits a window: the whole sphere is twice as wide as high.
+/// Returns the scene as the largest picture that fits a window: the whole sphere is twice as wide as high. A picture of
+/// which only a part is drawn is shown as a whole.
 fn fitted(scene: Scene, window: ImageSize) -> Result<Scene, SceneError> {
     let ImageSize { width, height } = window;
+    let scene = scene.with_crop(None)?;
     if scene.camera().projection == Projection::Equirectangular {
         let height = height.min(width / 2);
         return scene.with_size(2 * height, height);

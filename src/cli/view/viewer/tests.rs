@@ -306,3 +306,10 @@ fn the_whole_sphere_is_in_the_middle_of_any_window() {
     keys(&mut viewer, "]", Instant::now());
     assert_eq!(viewer.scene().camera().fov_degrees, 180.0);
 }
+
+#[test]
+fn a_crop_is_shown_as_the_whole_picture() {
+    let toml = Scene::builtin("lit").unwrap().to_toml() + "crop = [5, 5, 20, 10]\n";
+    let viewer = Viewer::new(Animation::from_toml(&toml).unwrap(), SIZE).unwrap();
+    assert_eq!((viewer.scene().size(), viewer.scene().crop()), (SIZE, None));
+}
