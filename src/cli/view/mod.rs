@@ -12,6 +12,8 @@ mod false_colour;
 #[cfg(feature = "view")]
 mod measure;
 #[cfg(feature = "view")]
+mod opening;
+#[cfg(feature = "view")]
 mod overlay;
 #[cfg(feature = "view")]
 mod pace;

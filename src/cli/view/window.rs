@@ -1,16 +1,15 @@
 //! The window and its events.
 
 use std::num::NonZero;
-use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-use softbuffer::{Context, Surface};
+use softbuffer::Context;
 use winit::application::ApplicationHandler;
 use winit::dpi::{PhysicalPosition, PhysicalSize};
 use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, OwnedDisplayHandle};
 use winit::keyboard::{Key, NamedKey};
-use winit::window::{Fullscreen, Window, WindowId};
+use winit::window::{Fullscreen, WindowId};
 
 use super::super::method::MethodArgs;
 use super::super::progress::Report;
@@ -20,6 +19,7 @@ use super::ViewArgs;
 use super::bitmap::Bitmap;
 use super::controls::{self, Action};
 use super::measure::Measure;
+use super::opening::{self, OpenWindow};
 use super::overlay::{Measured, Overlay};
 use super::pace::{Coarseness, Pace};
 use super::painter::{Look, Methods, ViewPainter};
@@ -31,9 +31,6 @@ use crate::scene::{Animation, ImageSize, builtins};
 
 /// The pixels of a touchpad that count as a notch of a wheel.
 const NOTCH: f64 = 40.0;
-
-/// The share of a display's side that a window takes at most, unless its size is given.
-const MOST_OF_DISPLAY: f64 = 0.9;
 
 /// Frames that are farther apart belong to different movements.
 const PAUSE: Duration = Duration::from_millis(250);
@@ -95,12 +92,6 @@ pub(super) fn run(args: &ViewArgs, report: Report) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The window that is open, and its pixels.
-struct OpenWindow {
-    window: Rc<Window>,
-    surface: Surface<OwnedDisplayHandle, Rc<Window>>,
-}
-
 /// The program while its window is open.
 struct ViewApp<'a> {
     args: &'a ViewArgs,
@@ -130,8 +121,18 @@ impl ApplicationHandler for ViewApp<'_> {
         if self.open.is_some() {
             return;
         }
-        match self.open(event_loop) {
-            Ok(open) => self.open = Some(open),
+        let size = match self.args.size {
+            Some(size) => size,
+            None => opening::size(self.viewer.size(), event_loop),
+        };
+        match OpenWindow::new(&self.title(), size, event_loop, &self.context) {
+            Ok(open) => {
+                self.overlay = Overlay::new(open.window.scale_factor());
+                let size = open.window.inner_size();
+                self.open = Some(open);
+                self.resize(size);
+                self.ask_for_frame();
+            }
             Err(error) => self.end(event_loop, Err(error)),
         }
     }
@@ -208,32 +209,6 @@ impl ApplicationHandler for ViewApp<'_> {
 }
 
 impl ViewApp<'_> {
-    /// Opens the window, as large as was asked for or as the display has room for.
-    fn open(&mut self, event_loop: &ActiveEventLoop) -> anyhow::Result<OpenWindow> {
-        let mut size = self.viewer.scene().image();
-        let display = event_loop
-            .primary_monitor()
-            .or_else(|| event_loop.available_monitors().next());
-        if let (None, Some(display)) = (self.args.size, display) {
-            size = fitted(size, display.size());
-        }
-        let attributes = Window::default_attributes()
-            .with_title(self.title())
-            .with_inner_size(PhysicalSize::new(size.width, size.height));
-        let window = Rc::new(event_loop.create_window(attributes)?);
-        let surface = Surface::new(&self.context, Rc::clone(&window));
-        let surface = surface.map_err(|error| anyhow::anyhow!("{error}"))?;
-        self.overlay = Overlay::new(window.scale_factor());
-        let open = OpenWindow { window, surface };
-        let size = open.window.inner_size();
-        self.open = Some(open);
-        self.resize(size);
-        self.ask_for_frame();
-        self.open
-            .take()
-            .ok_or_else(|| anyhow::anyhow!("the window has gone"))
-    }
-
     /// Ends the program when the events of now are done.
     fn end(&mut self, event_loop: &ActiveEventLoop, outcome: anyhow::Result<()>) {
         self.outcome = outcome;
@@ -415,17 +390,4 @@ fn action(event: &KeyEvent) -> Option<Action> {
     let action = controls::action(typed)?;
     let repeats = matches!(action, Action::ScaleFov(_) | Action::Expose(_));
     (repeats || !event.repeat).then_some(action)
-}
-
-/// The largest size of the same shape that a display has room for, and not larger than the picture.
-fn fitted(size: ImageSize, display: PhysicalSize<u32>) -> ImageSize {
-    let share = |display: u32, side: u32| MOST_OF_DISPLAY * f64::from(display) / f64::from(side);
-    let scale = share(display.width, size.width)
-        .min(share(display.height, size.height))
-        .min(1.0);
-    let side = |side: u32| ((scale * f64::from(side)) as u32).max(1);
-    ImageSize {
-        width: side(size.width),
-        height: side(size.height),
-    }
 }
