@@ -22,9 +22,9 @@ use crate::table::{Lookup, Table};
 ///
 /// A renderer keeps the isoradial curves of the last scene. While the camera's radius and the disk stay the same, the
 /// next scene is drawn from them if it shows no more of them, and nothing smaller. If it shows a little more, the new
-/// curves reach farther than it needs: few frames of a flight around the hole pay for curves. Every edge is right to the scene's tolerance whichever curves it is drawn from.
-/// Where no curves can be that accurate (a disk of any width seen through a lens of any length), each pixel's ray is
-/// followed by itself; [`FrameReport::ray_by_ray`] tells.
+/// curves reach farther than it needs: few frames of a flight around the hole pay for curves. Every edge is right to
+/// the scene's tolerance whichever curves it is drawn from. Where no curves can be that accurate (a disk of any width
+/// seen through a lens of any length), each pixel's ray is followed by itself; [`FrameReport::ray_by_ray`] tells.
 ///
 /// Smooth edges or hard ones are the scene's choice, [`Scene::antialias`]: a pixel is the share of its square that the
 /// disk covers, linear, or white where its centre sees the disk.

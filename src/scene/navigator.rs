@@ -1,18 +1,18 @@
 //! A camera that is steered by hand: about the hole, towards it, and aside.
 //!
 //! # Derivation
-//! The camera stands at a radius r, an inclination i from +z and an azimuth a from +x. Its frame is right-handed: p̂ away
-//! from the hole, `û = −∂p̂/∂i` up and `r̂ = û × p̂` to the right. All are defined and smooth at every angle, so that the
-//! camera passes over a pole upside down instead of turning about.
+//! The camera stands at a radius r, an inclination i from +z and an azimuth a from +x. Its frame is right-handed: p̂
+//! away from the hole, `û = −∂p̂/∂i` up and `r̂ = û × p̂` to the right. All are defined and smooth at every angle, so
+//! that the camera passes over a pole upside down instead of turning about.
 //!
-//! The camera looks at the hole, turned by a yaw about û to the right, then by a pitch upwards, then by a roll about its
-//! view: `f = −p̂ cos y cos p + r̂ sin y cos p + û sin p`. The focus is a point on this line. Where the camera looks
-//! within 60° of the hole that is the point beside the hole, `r (r̂ tan y + û tan p / cos y)`: a sum of small numbers, which
-//! keeps the digits of a far camera with a narrow field of view.
+//! The camera looks at the hole, turned by a yaw about û to the right, then by a pitch upwards, then by a roll about
+//! its view: `f = −p̂ cos y cos p + r̂ sin y cos p + û sin p`. The focus is a point on this line. Where the camera
+//! looks within 60° of the hole it is the point beside the hole, `r (r̂ tan y + û tan p / cos y)`: a sum of small
+//! numbers, which keeps the digits of a far camera with a narrow field of view.
 //!
 //! # The disk's matter
-//! A camera in the disk's plane between its edges is inside matter. A step of the navigator goes as far as it can without
-//! passing through: above and below the disk it keeps an elevation of [`CLEARANCE`].
+//! A camera in the disk's plane between its edges is inside matter. A step of the navigator goes as far as it can
+//! without passing through: above and below the disk it keeps an elevation of [`CLEARANCE`].
 
 use glam::DVec3;
 

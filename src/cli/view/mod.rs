@@ -45,8 +45,8 @@ use super::render::picture_size;
 use super::threads::ThreadArgs;
 use crate::scene::{DEFAULT_SCENE, ImageSize, Override};
 
-const TABLE_HELP: &str = "The table to read, made where it is missing [env: DARKNESS_TABLE] [default: the smallest that \
-    is enough]";
+const TABLE_HELP: &str = "The table to read, made where it is missing [env: DARKNESS_TABLE] [default: the smallest \
+    that is enough]";
 
 /// Open a window to look around a scene by hand
 ///

@@ -27,8 +27,8 @@ const SKY_MEMORY: ByteSize = ByteSize(4 << 30);
 /// The pixels of a row that are turned into colours at a time.
 const CHUNK: usize = 1 << 14;
 
-/// The methods that scenes need: the built-in tables, coarsest first, and exact curves. Each is opened when it is needed
-/// first.
+/// The methods that scenes need: the built-in tables, coarsest first, and exact curves. Each is opened when it is first
+/// needed.
 pub(super) struct Methods {
     args: MethodArgs,
     report: Report,
