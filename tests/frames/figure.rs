@@ -110,16 +110,18 @@ fn seen(view: &View, quantity: Quantity, order: u32, place: Point) -> Option<f64
     })
 }
 
-/// How far a place is from a level, in pixels, by the level's gradient there.
+/// How far a place is from a level, in pixels, by the level's gradient there: by differences over the longest of some
+/// steps that leads to no ray that falls in before it meets the plane. Beside the shadow that is a short one.
 fn distance(view: &View, contour: &Contour, place: Point) -> Option<f64> {
-    const STEP: f64 = 1e-3;
     let at = |dx: f64, dy: f64| {
         let place = place + Vec2::new(dx, dy);
         seen(view, contour.level.quantity, contour.order, place)
     };
-    let dx = (at(STEP, 0.0)? - at(-STEP, 0.0)?) / (2.0 * STEP);
-    let dy = (at(0.0, STEP)? - at(0.0, -STEP)?) / (2.0 * STEP);
-    Some((at(0.0, 0.0)? - contour.level.value).abs() / libm::hypot(dx, dy))
+    [1e-3, 1e-5, 1e-7].into_iter().find_map(|step| {
+        let dx = (at(step, 0.0)? - at(-step, 0.0)?) / (2.0 * step);
+        let dy = (at(0.0, step)? - at(0.0, -step)?) / (2.0 * step);
+        Some((at(0.0, 0.0)? - contour.level.value).abs() / libm::hypot(dx, dy))
+    })
 }
 
 /// Asserts that curves are where the exact rays say, all along. Returns how many places were compared.
@@ -353,6 +355,17 @@ fn outlines_enclose_the_masks_of_built_in_scenes() {
             check_outline(builtin.name(), &small).unwrap();
         }
     }
+}
+
+/// Guards against differences that reach into the shadow: the ghost image of a ring at the horizon lies along its edge.
+#[test]
+fn a_ring_at_the_horizon_is_where_exact_rays_are() {
+    let text = "[camera]\nradius = 44.61209\ninclination = 89.82001708225789\nfov = 116.52786767440767\n\
+                [disk]\ninner = 3.0\nouter = 15.0\n[image]\nwidth = 96\nheight = 64\n";
+    let view = View::new(&Scene::from_toml(text).unwrap());
+    let rings = levels(Quantity::Radius, &[1.1]);
+    let places = check(text, &view, &contours(&view, (3.0, 15.0), &rings, 2));
+    assert!(places > 50, "{places}");
 }
 
 proptest! {
