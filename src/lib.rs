@@ -68,7 +68,7 @@
 //! | [`render`] | [`Renderer`]: frames and batches of frames, as masks, in colour or as layers of data |
 //! | `figure` | curves of constant radius, redshift and flux as Bézier paths (feature `figure`) |
 //! | `chart` | speed against accuracy of every method, measured and drawn (feature `chart`) |
-//! | `cli` | the program `darkness` (feature `cli`, on by default) |
+//! | `cli` | the program `darkness` (feature `cli`, on by default; with its window: feature `view`) |
 //!
 //! `default-features = false` builds the library without the program and its dependencies.
 //!

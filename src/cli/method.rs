@@ -87,6 +87,17 @@ pub(super) enum Method {
 }
 
 impl MethodArgs {
+    /// The options of a verb that only draws with a table, perhaps a file that the user names.
+    #[cfg(feature = "view")]
+    pub(super) fn of_table(table: Option<PathBuf>) -> Self {
+        Self {
+            method: MethodName::Table,
+            table,
+            no_mmap: false,
+            integrate_tolerance: None,
+        }
+    }
+
     /// Checks the options and every byte of the table's file. Where the user names no table, the one called `needed` is
     /// taken; it is `None` where no table is accurate enough.
     ///

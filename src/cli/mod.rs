@@ -26,6 +26,7 @@ mod table;
 mod table_path;
 mod threads;
 mod trace;
+mod view;
 mod writable;
 
 use std::process::ExitCode;
@@ -66,6 +67,7 @@ Examples:
   darkness table fine                        the most accurate table
   printf 'u0,dudphi\\n0.03,0.1\\n' | darkness trace
   darkness isoradials                        Luminet's figure: rings around the hole, as isoradials.svg
+  darkness view lit                          a window to look around by hand (in builds with --features view)
   darkness chart --quick                     speed against accuracy on this machine, as chart.svg
   darkness completions bash                  for zsh, fish, powershell too; darkness man: manual pages
 
@@ -78,6 +80,7 @@ enum Verb {
     Table(table::TableArgs),
     Trace(trace::TraceArgs),
     Scene(scene::SceneArgs),
+    View(view::ViewArgs),
     Isoradials(isoradials::IsoradialsArgs),
     Chart(chart::ChartArgs),
     Job(job::JobArgs),
@@ -109,6 +112,7 @@ pub fn run() -> ExitCode {
         Verb::Table(args) => table::run(&args, report),
         Verb::Trace(args) => trace::run(&args, report),
         Verb::Scene(args) => scene::run(&args),
+        Verb::View(args) => view::run(&args, report),
         Verb::Isoradials(args) => isoradials::run(&args, report),
         Verb::Chart(args) => chart::run(&args, report),
         Verb::Job(args) => job::run(&args, report),

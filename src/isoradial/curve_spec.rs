@@ -119,6 +119,23 @@ impl CurveSpec {
         })
     }
 
+    /// Describes curves that serve the pictures beside this one too: of a camera that turns about the hole, or aside by
+    /// up to half its field of view.
+    pub(crate) fn ahead(&self) -> Self {
+        Self {
+            axis: self.axis + self.corner,
+            window: self.window.widened(self.corner),
+            ..*self
+        }
+    }
+
+    /// Returns whether this is another picture from the same radius, with pixels of about the same size: probably the
+    /// next one of a camera that turns.
+    pub(crate) fn is_beside(&self, other: &Self) -> bool {
+        let same = self.union(other).is_some() && self.tolerance == other.tolerance;
+        same && (0.5..=2.0).contains(&(self.pixel / other.pixel))
+    }
+
     /// Returns κ of the critical ray. It is positive (towards the hole) outside the photon sphere, negative inside.
     pub fn critical(&self) -> f64 {
         critical_kappa(self.u0, self.slope_scale)
@@ -153,5 +170,52 @@ pub(super) fn critical_kappa(u0: f64, slope_scale: f64) -> f64 {
         size
     } else {
         -size
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{ImageSize, Navigator};
+
+    #[test]
+    fn what_lies_ahead_serves_a_camera_that_turns() {
+        let spec = |scene: &Scene| CurveSpec::new(scene, &View::new(scene), scene.tolerance());
+        for (name, fov) in [
+            ("classic", 30.0),
+            ("lit", 8.0),
+            ("inside", 90.0),
+            ("edge-on", 30.0),
+        ] {
+            let scene = Scene::builtin(name).unwrap();
+            let ImageSize { width, height } = scene.image();
+            let start = Navigator::new(&scene);
+            let fov = start.fov_degrees().min(fov);
+            let ahead = spec(&scene).ahead();
+            assert!(ahead.is_beside(&spec(&scene)));
+            for (right, down) in [
+                (1.0, 0.3),
+                (-1.0, 0.3),
+                (50.0, 0.0),
+                (0.0, 0.5),
+                (0.0, -0.5),
+            ] {
+                let mut turned = start.clone();
+                turned.turn(right, down);
+                let mut aside = start.clone();
+                aside.look(0.2 * fov * right.signum(), 0.5 * down * fov);
+                for camera in [turned.camera(), aside.camera()] {
+                    let next = scene.clone().with_camera(camera).unwrap();
+                    let is_served = ahead.union(&spec(&next)) == Some(ahead);
+                    assert!(
+                        is_served,
+                        "{name}: {right}, {down}: {ahead:?}, {:?}",
+                        spec(&next)
+                    );
+                }
+            }
+            let finer = scene.clone().with_size(width / 4, height / 4).unwrap();
+            assert!(!ahead.is_beside(&spec(&finer)));
+        }
     }
 }

@@ -118,6 +118,11 @@ impl Isoradials {
         self.spec.union(spec) == Some(self.spec)
     }
 
+    /// Returns whether they were built for a picture [beside](CurveSpec::is_beside) that of `spec`.
+    pub(crate) fn are_beside(&self, spec: &CurveSpec) -> bool {
+        self.spec.is_beside(spec)
+    }
+
     /// Returns the inverse radii of the outer and the inner edge, 0 without a disk.
     pub(crate) fn u_edges(&self) -> (f64, f64) {
         let [inner, outer] = self.spec.u_edges.unwrap_or_default();

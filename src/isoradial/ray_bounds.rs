@@ -1,6 +1,6 @@
 //! Bounds of the rays in a picture.
 
-use super::ray_angles::cotangent_of;
+use super::ray_angles::{angle_of, cotangent_of};
 use crate::scene::{Direction, Projection, View};
 
 /// Bounds of a set of rays: an interval of κ, and an interval of `D/N`, the cotangent of φ₁ (see the
@@ -104,6 +104,19 @@ impl RayBounds {
         Self {
             kappa: hull(self.kappa, other.kappa),
             cotangent: hull(self.cotangent, other.cotangent),
+        }
+    }
+
+    /// Widens the bounds of κ by an angle, and those of the cotangent to three times their width.
+    pub(super) fn widened(&self, angle: f64) -> Self {
+        let wider = |bound: f64, angle: f64| cotangent_of(angle_of(bound) + angle);
+        let (low, high) = self.kappa;
+        let (least, greatest) = self.cotangent;
+        // Not a number where both are the same infinity, which no bound is beyond.
+        let width = (greatest - least).max(0.0);
+        Self {
+            kappa: (low.min(wider(low, angle)), high.max(wider(high, -angle))),
+            cotangent: (least - width, greatest + width),
         }
     }
 

@@ -10,7 +10,7 @@ use super::error::{RenderError, blank, make_room};
 use super::frame::{Threads, Workspace};
 use super::ink::SharedColours;
 use super::planes::{Form, FrameMemory, Plane, Target};
-use super::scene_frame::{FrameReport, SceneFrame};
+use super::scene_frame::{FrameReport, SceneFrame, is_unresolved};
 use super::sky::{FrameSky, SharedSky, SkyAtRadius};
 use crate::isoradial::{CurveSpec, Isoradials, RadiusMap};
 use crate::orbit::path::SweptAngles;
@@ -21,10 +21,10 @@ use crate::table::{Lookup, Table};
 /// Draws scenes.
 ///
 /// A renderer keeps the isoradial curves of the last scene. While the camera's radius and the disk stay the same, the
-/// next scene is drawn from them if it shows no more of them, and nothing smaller: only the first frame of a flight
-/// around the hole pays for curves. Every edge is right to the scene's tolerance whichever curves it is drawn from.
-/// Where no curves can be that accurate (a disk of any width seen through a lens of any length), each pixel's ray is
-/// followed by itself; [`FrameReport::ray_by_ray`] tells.
+/// next scene is drawn from them if it shows no more of them, and nothing smaller. If it shows a little more, the new
+/// curves reach farther than it needs: few frames of a flight around the hole pay for curves. Every edge is right to
+/// the scene's tolerance whichever curves it is drawn from. Where no curves can be that accurate (a disk of any width
+/// seen through a lens of any length), each pixel's ray is followed by itself; [`FrameReport::ray_by_ray`] tells.
 ///
 /// Smooth edges or hard ones are the scene's choice, [`Scene::antialias`]: a pixel is the share of its square that the
 /// disk covers, linear, or white where its centre sees the disk.
@@ -179,16 +179,21 @@ impl<A: SweptAngles> Renderer<A> {
     ) -> Result<FrameReport, RenderError> {
         let start = Instant::now();
         let spec = CurveSpec::new(scene, view, scene.tolerance());
-        if !self
-            .curves
-            .as_ref()
-            .is_some_and(|curves| curves.serves(&spec))
-        {
-            self.curves = None;
-            self.map = None;
-            self.sky = None;
-        }
         let angles = &self.angles;
+        let kept = self.curves.take();
+        let is_beside = kept.as_ref().is_some_and(|kept| kept.are_beside(&spec));
+        self.curves = kept.filter(|kept| kept.serves(&spec));
+        if self.curves.is_none() {
+            self.map = None;
+            if is_beside {
+                // The camera turns: the next frame will show yet more, and that is to be there already.
+                let ahead = Isoradials::new(&spec.ahead(), angles);
+                self.curves =
+                    Some(ahead).filter(|ahead| !is_unresolved(ahead.error(), scene.tolerance()));
+            } else {
+                self.sky = None;
+            }
+        }
         let curves = self
             .curves
             .get_or_insert_with(|| Isoradials::new(&spec, angles));

@@ -137,6 +137,6 @@ impl<A: SweptAngles> SceneFrame<'_, A> {
 
 /// Whether curves fall short of what their angles and double precision allow: a disk of any width and a lens of any
 /// length bend them more than any number of nodes follows.
-fn is_unresolved(error: EdgeError, tolerance: f64) -> bool {
+pub(super) fn is_unresolved(error: EdgeError, tolerance: f64) -> bool {
     error.interpolation > tolerance && error.interpolation > 4.0 * (error.angles + error.rounding)
 }

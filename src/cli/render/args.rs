@@ -142,7 +142,8 @@ fn bits(text: &str) -> Result<u8, String> {
     bits.ok_or_else(|| "a sample has 8 or 16 bits".into())
 }
 
-fn size(text: &str) -> Result<ImageSize, String> {
+/// Parses a picture's size.
+pub(in crate::cli) fn size(text: &str) -> Result<ImageSize, String> {
     let sides = text.split_once(['x', 'X', '×']);
     let size = sides.and_then(|(width, height)| {
         let (width, height) = (width.parse().ok()?, height.parse().ok()?);

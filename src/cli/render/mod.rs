@@ -18,6 +18,8 @@ mod npz;
 mod options;
 mod origin;
 mod output;
+#[cfg(feature = "view")]
+pub(super) mod picture;
 mod plan;
 mod png;
 mod run;
@@ -31,10 +33,12 @@ mod yuv;
 
 use std::io::{self, Write};
 
-pub(super) use args::RenderArgs;
+pub(super) use args::{RenderArgs, size as picture_size};
 pub(super) use output::sequence;
 use plan::Plan;
 pub(super) use sky::files as sky_files;
+#[cfg(feature = "view")]
+pub(super) use sky::read as read_sky;
 
 use super::progress::{ProgressKind, Report, warn};
 use super::stdio::StdoutError;

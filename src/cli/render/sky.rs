@@ -88,7 +88,7 @@ fn hash(path: &Path) -> Result<String, PanoramaProblem> {
 ///
 /// # Errors
 /// A file that cannot be read, or that needs too much memory.
-pub(super) fn read(
+pub(in crate::cli) fn read(
     sky: &Sky,
     frame: u64,
     allowed: ByteSize,

@@ -81,6 +81,17 @@ fn help_and_version_succeed_and_a_missing_verb_is_misuse() {
     assert!(stderr.contains("Usage:") && stderr.contains("Examples:"));
 }
 
+#[cfg(not(feature = "view"))]
+#[test]
+fn a_program_without_its_window_says_how_to_build_it_in() {
+    let folder = tempdir().unwrap();
+    let words = ["cargo run --release --features view -- view"];
+    for args in [&["view"][..], &["view", "lit", "--size", "320x180"]] {
+        refused(folder.path(), args, 1, &words);
+    }
+    assert!(listing(folder.path()).is_empty());
+}
+
 #[test]
 fn completions_and_manual_pages_know_every_verb() {
     let folder = tempdir().unwrap();

@@ -11,13 +11,18 @@ use crate::harness::{finish, printed, tool};
 use crate::tools;
 
 /// How commands begin that are not run, and why.
-const NOT_RUN: [(&str, &str); 4] = [
+const NOT_RUN: [(&str, &str); 6] = [
     (
         "git clone ",
         "the project's address is the reader's to fill in",
     ),
     ("cargo install ", "it would change the machine"),
     ("cargo add ", "it belongs to a project of the reader's"),
+    (
+        "cargo run --release --features view ",
+        "it opens a window; the tests of `view` open some",
+    ),
+    ("darkness view ", "the same"),
     (
         "sbatch ",
         "it needs a cluster; the tests of `farm` run such a script",
@@ -234,6 +239,23 @@ fn the_page_of_commands_has_every_verb() {
     for verb in verbs(&printed(folder.path(), &["--help"])) {
         assert!(text.contains(&format!("| `darkness {verb} ")), "{verb}");
     }
+}
+
+#[test]
+fn the_page_of_the_window_has_every_control_of_its_help() {
+    let folder = tempdir().unwrap();
+    let text = page("docs/view.md").text;
+    let help = printed(folder.path(), &["help", "view"]);
+    let (_, controls) = help.split_once("In the window:\n").unwrap();
+    let rows = controls.lines().map(|line| {
+        let (input, effect) = line.trim().split_once("  ").unwrap();
+        format!("| {input} | {} |", effect.trim())
+    });
+    let lines = text
+        .lines()
+        .skip_while(|line| !line.starts_with("| input |"));
+    let shown = lines.skip(2).take_while(|line| line.starts_with('|'));
+    assert!(rows.eq(shown.map(str::to_owned)), "{controls}");
 }
 
 /// Returns the verbs that the program's help lists, and those that it only mentions.
