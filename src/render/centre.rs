@@ -1,4 +1,4 @@
-//! What the centre of a pixel sees, from the curves alone.
+//! What a place of the picture sees, from the curves alone.
 
 use rayon::prelude::*;
 
@@ -47,4 +47,30 @@ pub(super) fn front(view: &View, curves: &Isoradials, (column, row): (f64, f64))
     } else {
         None
     }
+}
+
+/// Returns the share of what a pixel has within a fisheye's rim of which `sees` holds. The pixel's upper left corner is at
+/// a place, and its centre within the rim.
+///
+/// Where a few places agree they stand for all. That is so but where an edge passes straight behind the camera.
+pub(super) fn share_within_rim(
+    view: &View,
+    (column, row): (f64, f64),
+    sees: impl Fn((f64, f64)) -> bool,
+) -> f64 {
+    let counted = |side: u32| {
+        let offset = |i: u32| (f64::from(i) + 0.5) / f64::from(side);
+        let places = (0..side * side).map(|i| (column + offset(i % side), row + offset(i / side)));
+        let within = places.filter(|place| view.shows(*place));
+        within.fold((0_u32, 0_u32), |(seen, all), place| {
+            (seen + u32::from(sees(place)), all + 1)
+        })
+    };
+    let few = counted(3);
+    let (seen, all) = if few.0 == 0 || few.0 == few.1 {
+        few
+    } else {
+        counted(16)
+    };
+    f64::from(seen) / f64::from(all)
 }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::WHITE;
 use super::banded::{BandScratch, BandedOutline};
 use super::cells::{Cells, ONE};
-use super::centre::{fill_every_pixel, front};
+use super::centre::{fill_every_pixel, front, share_within_rim};
 use super::edge_map::EdgeMap;
 use super::error::{RenderError, check_buffer};
 use super::path::OutlinePath;
@@ -54,6 +54,7 @@ struct Bands<'a> {
     view: &'a View,
     curves: &'a Isoradials,
     outline: &'a BandedOutline,
+    smooth: bool,
     stride: usize,
 }
 
@@ -95,6 +96,7 @@ impl Workspace {
             view,
             curves,
             outline,
+            smooth,
             stride,
         };
         let bands = pixels[..needed].chunks_mut(stride.saturating_mul(rows));
@@ -155,15 +157,27 @@ impl Bands<'_> {
             let within = |column: u32| (column.saturating_sub(part.left) as usize).min(width);
             pixels[..within(from)].fill(T::default());
             pixels[within(to)..].fill(T::default());
+            if !self.smooth {
+                return;
+            }
             let inner = self.view.inner_columns((top + row) as u32);
             for column in (within(from)..within(inner.0)).chain(within(inner.1)..within(to)) {
-                pixels[column] = self.at_centre(column, top + row);
+                pixels[column] = self.at_rim(column, top + row);
             }
         });
         for &(column, row) in &scratch.doubtful {
             let (column, row) = (column as usize, row as usize);
             pixels[row * stride + column] = self.at_centre(column, top + row);
         }
+    }
+
+    /// The value of a pixel across a fisheye's rim: a column of the drawn part, and a row of the picture.
+    fn at_rim<T: MaskSample>(&self, column: usize, row: usize) -> T {
+        let left = self.view.region().left as usize;
+        let corner = ((left + column) as f64, row as f64);
+        let sees = |place| front(self.view, self.curves, place).is_some();
+        let share = share_within_rim(self.view, corner, sees);
+        T::of_share((share * ONE as f64) as i64)
     }
 
     /// What the centre of a pixel sees: a column of the drawn part, and a row of the picture.

@@ -8,6 +8,7 @@ use std::cell::{Cell, RefCell};
 
 use super::banded::{BandScratch, BandedOutline};
 use super::cells::{Cells, ONE};
+use super::centre::share_within_rim;
 use super::edge_map::EdgeMap;
 use super::frame::{Threads, on_threads};
 use super::ink::{Ink, Part};
@@ -41,6 +42,8 @@ struct ShadedScratch {
     band: BandScratch,
     runs: Vec<Run>,
     partial: Vec<Partial>,
+    /// Those across a fisheye's rim.
+    rim: Vec<Partial>,
     parts: Vec<Part>,
     /// For hard edges: the order of each pixel of the band.
     orders: Vec<u8>,
@@ -186,7 +189,7 @@ impl ShadedScratch {
             });
             let view = painter.shader.view;
             keep(runs, |row| band.inner_columns(view, row));
-            add_rim(painter, *order, runs);
+            add_rim(painter, *order, runs, &mut self.rim);
             painter.paint_runs(*order, &self.runs, memory);
             if sky.is_some() {
                 self.covered.extend_from_slice(&self.runs);
@@ -205,6 +208,7 @@ impl ShadedScratch {
             let (from, to) = band.inner_columns(view, pixel.row as usize);
             (from..to).contains(&(pixel.column as usize))
         });
+        self.partial.append(&mut self.rim);
         let beside = |row: usize, column: usize| {
             let light = self.light.get(row * band.width + column);
             let sky = sky.filter(|sky| sky.sky.shines());
@@ -386,17 +390,34 @@ fn keep(runs: &mut Vec<Run>, columns: impl Fn(usize) -> (usize, usize)) {
     });
 }
 
-/// Adds to the runs of an order the pixels across a fisheye's rim whose centres see it, where no area counts.
-fn add_rim<I, const N: usize>(painter: &Painter<'_, I, N>, order: u32, runs: &mut Vec<Run>) {
-    let (view, band, count) = (painter.shader.view, painter.band, runs.len());
+/// Adds the pixels across a fisheye's rim that an order covers wholly or in part, where no area counts.
+fn add_rim<I, const N: usize>(
+    painter: &Painter<'_, I, N>,
+    order: u32,
+    runs: &mut Vec<Run>,
+    partial: &mut Vec<Partial>,
+) {
+    let (shader, band, count) = (painter.shader, painter.band, runs.len());
     for row in 0..band.rows {
-        let (seen, inner) = (band.seen_columns(view, row), band.inner_columns(view, row));
+        let seen = band.seen_columns(shader.view, row);
+        let inner = band.inner_columns(shader.view, row);
         for column in (seen.0..inner.0).chain(inner.1..seen.1) {
-            if painter.shader.front_at(band.centre(column, row)) == Some(order) {
+            let corner = ((band.left + column) as f64, (band.top + row) as f64);
+            let sees = |place| shader.front_at(place) == Some(order);
+            let share = share_within_rim(shader.view, corner, sees);
+            let (row, column) = (row as u32, column as u32);
+            if share == 1.0 {
                 runs.push(Run {
-                    row: row as u32,
-                    from: column as u32,
-                    to: column as u32 + 1,
+                    row,
+                    from: column,
+                    to: column + 1,
+                });
+            } else if share > 0.0 {
+                let share = share as f32;
+                partial.push(Partial {
+                    row,
+                    column,
+                    part: Part { order, share },
                 });
             }
         }

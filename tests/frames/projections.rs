@@ -133,14 +133,18 @@ proptest! {
                 let is_shown = fine.shows((f64::from(column) + 0.5, f64::from(row) + 0.5));
                 is_shown.then(|| f64::from(many[(row * RAYS * width + column) as usize]))
             });
-            // At the rim rays beyond it see nothing.
-            let Some(sum) = rays.sum::<Option<f64>>() else {
+            let within: Vec<f64> = rays.flatten().collect();
+            // What is beyond a rim counts where the picture goes on there.
+            let is_cut = within.len() < (RAYS * RAYS) as usize;
+            if is_cut && view.pixel_side() * f64::from(height) < 6.2 {
                 continue;
-            };
-            let mean = sum / f64::from(RAYS * RAYS);
+            }
+            let mean = within.iter().sum::<f64>() / within.len() as f64;
             let off = (mean - f64::from(*drawn)).abs() / 255.0;
             // Each row of rays counts an edge to half a ray, and a pixel may hold several edges.
-            prop_assert!(off < 0.045, "{:?} {} {}: {} not {}\n{}", kind, i, j, drawn, mean, scene.to_toml());
+            // Across a rim some rays are counted: 3 × 3 or 16 × 16.
+            let most = if is_cut { 0.15 } else { 0.045 };
+            prop_assert!(off < most, "{:?} {} {}: {} not {}\n{}", kind, i, j, drawn, mean, scene.to_toml());
         }
     }
 }
