@@ -17,7 +17,7 @@ mod camera;
 mod sky;
 mod write;
 
-pub(super) use camera::{CameraTable, Fov, Place, SPHERE};
+pub(super) use camera::{CameraTable, Fov, Place};
 
 /// The whole file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

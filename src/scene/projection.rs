@@ -2,6 +2,9 @@
 
 use serde::Deserialize;
 
+/// The height of a picture of the whole sphere, in degrees.
+pub(super) const SPHERE: f64 = 180.0;
+
 /// How directions become places in the picture.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]

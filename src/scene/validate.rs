@@ -5,8 +5,7 @@ use std::fmt::Debug;
 use glam::DVec3;
 
 use super::error::SceneError;
-use super::file::SPHERE;
-use super::projection::Projection;
+use super::projection::{Projection, SPHERE};
 use super::values::{Camera, Disk, ImageSettings, ImageSize, Region};
 use super::vector::{cosine, direction, norm};
 

@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use super::{maybe_three_numbers, three_numbers};
 use crate::scene::error::SceneError;
-use crate::scene::projection::Projection;
+use crate::scene::projection::{Projection, SPHERE};
 use crate::scene::validate;
 use crate::scene::values::{Camera, ImageSize};
 
@@ -28,9 +28,6 @@ const DEFAULT_FOV: f64 = 30.0;
 
 /// The whole angle of a fisheye where none is given, in degrees: that of a dome.
 const DEFAULT_FISHEYE: f64 = 180.0;
-
-/// The height of the whole sphere, in degrees.
-pub(in crate::scene) const SPHERE: f64 = 180.0;
 
 impl Default for CameraTable {
     fn default() -> Self {
