@@ -90,7 +90,7 @@ mod tests {
     fn what_makes_no_sense_is_told() {
         for (camera, size, words) in [
             ("projection = \"dome\"", "", ["fisheye", "equirectangular"]),
-            ("projection = 5", "", ["`5`", "string"]),
+            ("projection = 5", "", ["`5`", "text"]),
             ("fov = 200", "", ["camera.fov", "fisheye"]),
             (
                 "projection = \"fisheye\"\nfov = 361",
