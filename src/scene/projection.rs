@@ -110,7 +110,7 @@ mod tests {
             (
                 "projection = \"equirectangular\"\nfov = 90",
                 "width = 64\nheight = 32",
-                ["field of view", "whole sphere"],
+                ["camera.fov", "whole sphere"],
             ),
             (
                 "projection = \"equirectangular\"",

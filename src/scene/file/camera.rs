@@ -129,7 +129,7 @@ impl TryFrom<CameraKeys> for CameraTable {
             (Projection::Equirectangular, None, None) => Fov::Vertical(SPHERE),
             (Projection::Equirectangular, ..) => {
                 return Err(
-                    "an equirectangular picture shows the whole sphere; leave out its field of view, fov or fov_horizontal",
+                    "an equirectangular picture shows the whole sphere; leave out camera.fov and camera.fov_horizontal",
                 );
             }
         };

@@ -124,6 +124,8 @@ fn memory_that_the_system_refuses_is_reported() {
                     assert!(said.contains("memory"), "{said}");
                     refused += 1;
                 }
+                // The system's own loader speaks before the program begins.
+                Some(127) if said.contains("error while loading shared libraries") => {}
                 _ => panic!("{limit} KiB: {}: {said}", output.status),
             }
         }
