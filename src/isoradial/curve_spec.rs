@@ -9,8 +9,8 @@
 //! centre.
 //!
 //! A fisheye of 360 degrees shows the direction behind the camera all round, and an equirectangular picture its poles
-//! along a whole row. There a pixel is no angle at all. Where pixels are [`NARROWEST`] times narrower than in the centre
-//! or more, the tolerance is that of pixels so many times narrower.
+//! along a whole row. There a pixel is no angle at all. Where pixels are [`NARROWEST`] times narrower than in the
+//! centre or more, the tolerance is that of pixels so many times narrower.
 
 use core::f64::consts::PI;
 
@@ -58,8 +58,8 @@ impl CurveSpec {
                 let corner = libm::atan((x * x + y * y).sqrt());
                 (axis, corner, RayBounds::of_picture(view, axis, corner))
             }
-            // Y of the upper edge is half of the whole angle. Nothing is seen beyond the rim, but the outline is followed
-            // to the picture's corners: where it ended within the picture its rows would have no sides.
+            // Y of the upper edge is half of the whole angle. Nothing is seen beyond the rim, but the outline is
+            // followed to the picture's corners: where it ended within the picture its rows would have no sides.
             Projection::Fisheye => {
                 let narrowest = libm::acos(2.0 / NARROWEST - 1.0);
                 let corner = (x * x + y * y).sqrt().min(PI);

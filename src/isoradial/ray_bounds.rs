@@ -60,8 +60,8 @@ impl RayBounds {
     }
 
     /// Bounds the rays of a picture's rectangle. All their transverse parts lie in a circle about that of the central
-    /// ray. Returns `None` if that circle contains zero (the ray straight at the hole, or straight away from it), and for
-    /// pictures that are not flat.
+    /// ray. Returns `None` if that circle contains zero (the ray straight at the hole, or straight away from it), and
+    /// for pictures that are not flat.
     fn of_rectangle(view: &View) -> Option<Self> {
         // The rays of other pictures than flat ones bound no rectangle.
         if view.lens().projection() != Projection::Perspective {

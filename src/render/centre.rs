@@ -49,8 +49,8 @@ pub(super) fn front(view: &View, curves: &Isoradials, (column, row): (f64, f64))
     }
 }
 
-/// Returns the share of what a pixel has within a fisheye's rim of which `sees` holds. The pixel's upper left corner is at
-/// a place, and its centre within the rim.
+/// Returns the share of what a pixel has within a fisheye's rim of which `sees` holds. The pixel's upper left corner is
+/// at a place, and its centre within the rim.
 ///
 /// Where a few places agree they stand for all. That is so but where an edge passes straight behind the camera.
 pub(super) fn share_within_rim(

@@ -56,6 +56,7 @@ pub mod pixelwise;
 mod planes;
 mod renderer;
 mod round;
+mod runs;
 mod scene_frame;
 mod section;
 mod shaded;

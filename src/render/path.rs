@@ -292,8 +292,8 @@ impl Pen<'_> {
         }
     }
 
-    /// Whether an edge may be drawn as one arc between places: ahead of the camera at similar distances, or with no seam
-    /// between them.
+    /// Whether an edge may be drawn as one arc between places: ahead of the camera at similar distances, or with no
+    /// seam between them.
     fn are_ahead(&self, places: &[&Place]) -> bool {
         if self.map.is_flat {
             return is_level(places.iter().map(|place| place.seen[0]));

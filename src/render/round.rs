@@ -7,8 +7,8 @@
 //!
 //! * Left and right: x is continued beyond the side, and an arc is drawn once for each turn that brings a part of it
 //!   into the picture.
-//! * A pole: the edge is followed to within rounding. From one end to the other of what is left x may be any, and y is a
-//!   side of the picture up to rounding: a level line along it covers nothing, and is left out.
+//! * A pole: the edge is followed to within rounding. From one end to the other of what is left x may be any, and y is
+//!   a side of the picture up to rounding: a level line along it covers nothing, and is left out.
 //! * The direction behind the camera: what is left jumps to the other side of the rim. The path is led around, outside
 //!   of the rim. Whether it goes to the left or to the right is the same: the difference is a circle around all that is
 //!   seen, and the sum along the picture's left side is found from a place within.

@@ -115,7 +115,8 @@ impl Scene {
     /// drawn.
     ///
     /// # Errors
-    /// [`SceneError::Value`] for a size that is not allowed (an equirectangular picture is twice as wide as high), and for one that does not have the part that is drawn.
+    /// [`SceneError::Value`] for a size that is not allowed (an equirectangular picture is twice as wide as high), and
+    /// for one that does not have the part that is drawn.
     pub fn with_size(mut self, width: u32, height: u32) -> Result<Self, SceneError> {
         let size = validate::image_size(i64::from(width), i64::from(height))?;
         validate::shape(self.camera.projection, size)?;

@@ -7,10 +7,10 @@
 //! |---|---|---|
 //! | perspective | `(1, X, Y)` | `X = right/ahead`, `Y = up/ahead` |
 //! | fisheye | `(cos ρ, X sin ρ/ρ, Y sin ρ/ρ)`, `ρ = √(X² + Y²)` | `ρ = atan2(h, ahead)`, `h = √(right² + up²)` |
-//! | equirectangular | `(cos Y cos X, cos Y sin X, sin Y)` | `X = atan2(right, ahead)`, `Y = atan2(up, √(ahead² + right²))` |
+//! | equirectangular | `(cos Y cos X, cos Y sin X, sin Y)` | `X = atan2(right, ahead)`, `Y = atan2(up, l)` |
 //!
-//! So X and Y are tangents in perspective, and radians elsewhere: the fisheye is the equidistant one, in which ρ is the
-//! angle from the centre.
+//! with `l = √(ahead² + right²)`. So X and Y are tangents in perspective, and radians elsewhere: the fisheye is the
+//! equidistant one, in which ρ is the angle from the centre.
 
 use core::f64::consts::PI;
 

@@ -2,10 +2,10 @@
 //!
 //! # Derivation
 //!
-//! The camera is a static observer at P, `r = |P|`, `p̂ = P/r`, and looks at F. With `V = F − P`, `L = |V|`:
-//! `f = V/L`, `right = f × up` normalised, `true_up = right × f`. The [lens](super::lens) tells in which direction the
-//! picture's point (X, Y) is seen, by its parts along f, right and `true_up`: `d = f + X right + Y true_up` in perspective.
-//! Of a direction d only its inward part `z = −d·p̂` and its part across p̂, `t = d + z p̂`, are needed: the ray moves in
+//! The camera is a static observer at P, `r = |P|`, `p̂ = P/r`, and looks at F. With `V = F − P`, `L = |V|`: `f = V/L`,
+//! `right = f × up` normalised, `true_up = right × f`. The [lens](super::lens) tells in which direction the picture's
+//! point (X, Y) is seen, by its parts along f, right and `true_up`: `d = f + X right + Y true_up` in perspective. Of a
+//! direction d only its inward part `z = −d·p̂` and its part across p̂, `t = d + z p̂`, are needed: the ray moves in
 //! the plane of p̂ and t, and starts with `du/dφ = u0 √(1 − u0) z/s`, `s = |t|`.
 //!
 //! t is given in a basis (â, b̂) of the plane across p̂: â is along the part across p̂ of the disk's unit normal n,
@@ -284,9 +284,9 @@ impl View {
         (from, width - from)
     }
 
-    /// Returns those of the [shown columns](Self::shown_columns) whose pixels lie wholly within the rim, where that is one
-    /// direction: of a fisheye of 360 degrees. Beyond that direction the picture would begin again, so that of the pixels
-    /// across the rim no area counts. Elsewhere all shown columns are returned.
+    /// Returns those of the [shown columns](Self::shown_columns) whose pixels lie wholly within the rim, where that is
+    /// one direction: of a fisheye of 360 degrees. Beyond that direction the picture would begin again, so that of the
+    /// pixels across the rim no area counts. Elsewhere all shown columns are returned.
     pub(crate) fn inner_columns(&self, row: u32) -> (u32, u32) {
         let (mut from, to) = self.shown_columns(row);
         let height = f64::from(self.height());

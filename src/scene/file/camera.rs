@@ -1,4 +1,5 @@
-//! `[camera]`: where it stands, by a position or by angles, its projection, and its field of view, vertical or horizontal.
+//! `[camera]`: where it stands, by a position or by angles, its projection, and its field of view, vertical or
+//! horizontal.
 
 use serde::Deserialize;
 
