@@ -1,38 +1,8 @@
 //! `darkness view`: a window in which a scene is looked at by hand.
 //!
-//! The window ([`window`]) hands what the hand does to the [`viewer`], which knows no window and says which scene is
-//! looked at; the [`painter`] draws it with the renderer that all pictures are drawn with, and the [`overlay`] writes
-//! over it. Only the feature `view` builds these; without it the verb says how to build them in.
+//! Only the feature `view` builds the window; without it the verb says how to build it in.
 
-#[cfg(feature = "view")]
-mod bitmap;
 mod controls;
-#[cfg(feature = "view")]
-mod false_colour;
-#[cfg(feature = "view")]
-mod measure;
-#[cfg(feature = "view")]
-mod opening;
-#[cfg(feature = "view")]
-mod overlay;
-#[cfg(feature = "view")]
-mod pace;
-#[cfg(feature = "view")]
-mod painter;
-#[cfg(feature = "view")]
-mod playback;
-#[cfg(feature = "view")]
-mod pointed;
-#[cfg(feature = "view")]
-mod save;
-#[cfg(feature = "view")]
-mod shown;
-#[cfg(feature = "view")]
-mod text;
-#[cfg(feature = "view")]
-mod viewer;
-#[cfg(feature = "view")]
-mod watch;
 #[cfg(feature = "view")]
 mod window;
 

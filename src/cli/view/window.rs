@@ -1,4 +1,22 @@
 //! The window and its events.
+//!
+//! It hands what the hand does to the [`viewer`], which knows no window and says which scene is looked at; the
+//! [`painter`] draws it with the renderer that all pictures are drawn with, and the [`overlay`] writes over it.
+
+mod bitmap;
+mod false_colour;
+mod measure;
+mod opening;
+mod overlay;
+mod pace;
+mod painter;
+mod playback;
+mod pointed;
+mod save;
+mod shown;
+mod text;
+mod viewer;
+mod watch;
 
 use std::num::NonZero;
 use std::time::{Duration, Instant};
@@ -16,18 +34,17 @@ use super::super::progress::Report;
 use super::super::stdio::print;
 use super::super::threads::start_threads;
 use super::ViewArgs;
-use super::bitmap::Bitmap;
 use super::controls::{self, Action};
-use super::measure::Measure;
-use super::opening::{self, OpenWindow};
-use super::overlay::{Measured, Overlay};
-use super::pace::{Coarseness, Pace};
-use super::painter::{Look, Methods, ViewPainter};
-use super::pointed::pointed;
-use super::save;
-use super::viewer::{Button, Request, Viewer};
-use super::watch::SceneWatch;
 use crate::scene::{Animation, ImageSize, builtins};
+use bitmap::Bitmap;
+use measure::Measure;
+use opening::OpenWindow;
+use overlay::{Measured, Overlay};
+use pace::{Coarseness, Pace};
+use painter::{Look, Methods, ViewPainter};
+use pointed::pointed;
+use viewer::{Button, Request, Viewer};
+use watch::SceneWatch;
 
 /// The pixels of a touchpad that count as a notch of a wheel.
 const NOTCH: f64 = 40.0;

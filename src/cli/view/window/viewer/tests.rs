@@ -23,7 +23,7 @@ fn drag(viewer: &mut Viewer, button: Button, (right, down): (f64, f64), now: Ins
 
 fn keys(viewer: &mut Viewer, keys: &str, now: Instant) {
     for key in keys.chars() {
-        let action = super::super::controls::action(key).unwrap();
+        let action = super::super::super::controls::action(key).unwrap();
         assert_eq!(viewer.act(action, now), None, "{key}");
     }
 }

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use bytesize::ByteSize;
 use rayon::prelude::*;
 
-use super::super::method::{Method, MethodArgs};
-use super::super::progress::Report;
-use super::super::render::read_sky;
+use super::super::super::method::{Method, MethodArgs};
+use super::super::super::progress::Report;
+use super::super::super::render::read_sky;
 use super::bitmap::colour;
 use super::false_colour::ColourScale;
 use super::pace::Coarseness;

@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use super::super::controls::Action;
 use super::bitmap::Area;
-use super::controls::Action;
 use super::playback::Playback;
 use super::shown::Shown;
 use crate::scene::{Animation, ImageSize, MAX_EXPOSURE, Navigator, Projection, Scene, SceneError};

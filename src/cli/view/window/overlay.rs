@@ -1,7 +1,7 @@
 //! What is written over the picture: figures, help, messages, the scale of false colours, the animation's bar.
 
+use super::super::controls;
 use super::bitmap::{Area, Bitmap};
-use super::controls;
 use super::false_colour::ColourScale;
 use super::pace::Coarseness;
 use super::text::Typeface;

@@ -4,8 +4,8 @@ use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::super::render::picture;
-use super::PictureFormat;
+use super::super::super::render::picture;
+use super::super::PictureFormat;
 use super::painter::{Look, ViewPainter};
 use super::shown::Shown;
 use crate::output::write_whole;
